@@ -19,9 +19,11 @@ from contact_dynamics.impact import (
     StrikingBodies,
     impact_sequence,
     planar_impacts,
+    response_impacts,
     several_impact,
     spatial_impact,
     spatial_impacts,
+    spatial_pair_impact,
 )
 from contact_dynamics.shapes import box
 from contact_dynamics.shapes.convex import ConvexShape
@@ -83,6 +85,8 @@ def impact_bits(body: Body) -> list[object]:
     lands = BodyState(p_WB_W=[0, 0, 0.03], q_WB=[0, 0, 0, 1], v_WB_W=[1, 0.5, -1], w_WB_W=[0.4, 1, 2])
     corners = np.array([[x, y, 0.0] for x in (-0.075, 0.075) for y in (-0.05, 0.05)])
     contacts = ContactSet(p_WC_W=corners, normals_W=up, frictions=0.3, restitutions=0.5)
+    ways = rng.normal(size=(n, 3, 3)) * (np.arange(3) <= np.arange(n)[:, None] % 3)[:, None, :]
+    points_slide = np.einsum("ijk,ik->ij", ways, rng.normal(size=(n, 3)))  # of one to three freedoms
     falls = BodyState(p_WB_W=[0, 0, 0.1], q_WB=[0.6, 0, 0, 0.8], v_WB_W=[1, 0.5, -1], w_WB_W=[0.4, 1, 2])
     world = World(surfaces=(FLOOR,), gravity_W=[0, 0, -9.81])
     found: list[object] = []
@@ -106,11 +110,23 @@ def impact_bits(body: Body) -> list[object]:
             restitutions=0.5,
             restitution_law=law,
         )
-        found += [many.to_dict(), planar.to_dict()]
+        mechanisms = response_impacts(
+            ways @ ways.transpose(0, 2, 1),
+            points_slide,
+            normals_W=up,
+            frictions=0.3,
+            restitutions=np.where(np.arange(n) % 3 == 2, 0.5, 0.0),  # others may wedge
+            restitution_laws=law,
+            skip_separating=True,
+        )
+        found += [many.to_dict(), planar.to_dict(), mechanisms.to_dict()]
         for i in np.flatnonzero(many.velocities_before_W[:, 2] < 0.0):
             state = BodyState(p_WB_W=[0, 0, 0], q_WB=q[i], v_WB_W=v[i], w_WB_W=w[i])
             contact = Contact(p_WC_W=points[i], normal_W=up, friction=0.3, restitution=0.5)
             found.append(spatial_impact(mass, state, contact, restitution_law=law).to_dict())
+            under = BodyState(p_WB_W=points[i] - [0, 0, 0.1], q_WB=q[i - 1])
+            pair = spatial_pair_impact(mass, state, mass, under, contact, restitution_law=law)
+            found.append(pair.to_dict())
         found.append(several_impact(mass, lands, contacts, restitution_law=law).to_dict())
         found.append(impact_sequence(body, falls, world, restitution_law=law, window=0.2).to_dict())
     return found

@@ -65,70 +65,15 @@ def bits(module: ModuleType) -> list[object]:
     return found
 
 
-def response_bits(module: ModuleType) -> list[object]:
-    """Return what a module finds of drawn strikes of a body, and of two bodies."""
-    rng = np.random.default_rng(5)
-    rows = np.empty((2, COUNT, 23))
-    rows[..., 0] = 10.0 ** rng.uniform(-1.0, 1.0, size=(2, COUNT))
-    rows[..., 1:10] = (np.diag([0.6, 0.7, 0.9]) + 0.1).ravel()
-    rows[..., 10:] = rng.normal(size=(2, COUNT, 13))
-    rows[..., 10:14] /= np.linalg.norm(rows[..., 10:14], axis=2)[..., None]
-    contacts = np.hstack([rng.normal(size=(COUNT, 3)), rng.uniform(size=(COUNT, 2))])
-    contacts[:, :3] /= np.linalg.norm(contacts[:, :3], axis=1)[:, None]
-    found: list[object] = []
-    for law in RestitutionLaw:
-        for others in (np.empty((0, 23)), rows[1]):
-            outcomes, results = np.empty(COUNT, dtype=np.int64), np.zeros((COUNT, 24))
-            tables = rows[0].data, others.data, contacts.data
-            done = module.Strike(law).strike_rows(*tables, 1e-9, True, outcomes.data, results.data)  # noqa: FBT003
-            assert done == COUNT
-            found += [outcomes.tolist(), results.tolist()]
-        # Mechanisms with one to three degrees of freedom.
-        ways = rng.normal(size=(COUNT, 3, 3)) * (np.arange(3) <= np.arange(COUNT)[:, None] % 3)[:, None, :]
-        velocities = np.einsum("ijk,ik->ij", ways, rng.normal(size=(COUNT, 3)))
-        mechanisms = np.hstack([(ways @ ways.transpose(0, 2, 1)).reshape(COUNT, 9), velocities])
-        for row, contact in zip(mechanisms, contacts, strict=True):
-            outcomes, results = np.empty(1, dtype=np.int64), np.zeros((1, 12))
-            tables = np.ascontiguousarray(row[None]).data, np.ascontiguousarray(contact[None]).data
-            module.Strike(law).strike_mechanism_rows(*tables, 1e-9, True, outcomes.data, results.data)  # noqa: FBT003
-            found += [outcomes.tolist(), results.tolist()]
-    return found
-
-
-def planar_bits(module: ModuleType) -> list[object]:
-    """Return what a module finds on drawn planar strikes, one by one and together."""
-    rng = np.random.default_rng(4)
-    mass, inertia = 10.0 ** rng.uniform(-1.0, 1.0, size=(2, COUNT))
-    friction, e, angle = (
-        10.0 ** rng.uniform(-1.5, 0.7, COUNT),
-        rng.uniform(size=COUNT),
-        rng.normal(size=COUNT),
-    )
-    v_x, v_y, w, r_x, r_y = rng.normal(size=(5, COUNT))
-    n_x, n_y = np.cos(angle), np.sin(angle)
-    side = np.where((v_x - w * r_y) * n_x + (v_y + w * r_x) * n_y > 0.0, -1.0, 1.0)
-    columns = [mass, inertia, friction, e, v_x, v_y, w, r_x, r_y, side * n_x, side * n_y]
-    found: list[object] = []
-    for law in RestitutionLaw:
-        outcomes, results, separating = module.planar_strikes(columns, law, 1e-9)
-        assert separating is None
-        found += [outcomes.tolist(), results.tolist()]
-        response = module.inverse_inertia(1.0, 0.7, -1.0, -4.0)
-        found += [module.impulse_path(-1.0, v_n, response, 0.3, 0.5, law) for v_n in (0.0, -1.0)]
-    return found
-
-
 def test_the_suite_runs_with_the_compiled_core() -> None:
     assert all((module.__file__ or "").endswith(SUFFIX) for module in (path, response, routh))
 
 
-def test_compiled_and_plain_give_the_same_bits(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_compiled_and_plain_give_the_same_bits() -> None:
+    """Of all kinds of paths. Whole impacts and tosses are in test_compiled_core."""
     plain = loaded(SOURCE)
     assert (plain.__file__ or "").endswith(".py")
     assert bits(plain) == bits(path)
-    monkeypatch.setitem(sys.modules, path.__name__, plain)
-    assert response_bits(loaded(SOURCE.with_name("response.py"))) == response_bits(response)
-    assert planar_bits(loaded(IMPACT / "planar" / "routh.py")) == planar_bits(routh)
 
 
 @pytest.mark.slow  # half a minute of compilation
@@ -148,10 +93,18 @@ def test_a_build_for_a_processor_that_fuses_gives_the_same_bits(tmp_path: Path) 
     )
     (built,) = (tmp_path / "lib").rglob(f"path{SUFFIX}")
     assert bits(loaded(built)) == bits(path)
-    (built,) = (tmp_path / "lib").rglob(f"response{SUFFIX}")
-    assert response_bits(loaded(built)) == response_bits(response)
-    (built,) = (tmp_path / "lib").rglob(f"routh{SUFFIX}")
-    assert planar_bits(loaded(built)) == planar_bits(routh)
+    fused = tmp_path / "fused"
+    shutil.copytree(ROOT / NAME, fused / NAME, copy_function=os.symlink)
+    for each in (tmp_path / "lib").rglob(f"*{SUFFIX}"):
+        (fused / each.relative_to(tmp_path / "lib")).unlink()
+        shutil.copy(each, fused / each.relative_to(tmp_path / "lib"))
+    script = ROOT / "test" / "test_compiled_core.py"
+    whole = [sys.executable, "-W", "error::RuntimeWarning", script]  # of a core that is not used
+    ours, theirs = (
+        subprocess.run(whole, env={**os.environ, "PYTHONPATH": str(folder)}, capture_output=True, check=True)
+        for folder in (ROOT, fused)
+    )
+    assert ours.stdout == theirs.stdout
 
 
 def test_lists_in_python_are_as_long_as_arrays_in_c() -> None:
