@@ -16,7 +16,7 @@ from contact_dynamics.motion.forces import Drag
 from contact_dynamics.motion.integrated import forced_motion
 from contact_dynamics.rigid_body.body import BodyState, MassProperties
 from contact_dynamics.shapes.convex import ConvexShape, box, capsule, cone, cylinder, rounded, sphere
-from contact_dynamics.tumbling import FreeMotion, free_motion
+from landing.test_plane_arrival import toss
 
 FLOOR = (0.0, 0.0, 0.0)
 UP = (0.0, 0.0, 1.0)
@@ -33,18 +33,6 @@ SHAPES = {
     "rounded box": rounded(box(size=(0.08, 0.04, 0.02)), radius=0.01),
     "rounded disc": rounded(cylinder(radius=0.04, length=0.0), radius=0.01),
 }
-
-
-def toss(
-    height: float,
-    *,
-    q_WB: tuple[float, ...] = (0.0, 0.0, 0.0, 1.0),
-    v: tuple[float, ...] = (0.0, 0.0, 0.0),
-    w: tuple[float, ...] = (0.0, 0.0, 0.0),
-    gravity: float = -G,
-) -> FreeMotion:
-    state = BodyState(p_WB_W=(0.0, 0.0, height), q_WB=q_WB, v_WB_W=v, w_WB_W=w)
-    return free_motion(BODY, state, gravity_W=(0.0, 0.0, gravity))
 
 
 def lowest(shape: ConvexShape, down_B: np.ndarray) -> np.ndarray:
