@@ -26,8 +26,13 @@ from contact_dynamics.rigid_body.body import BodyState
 from contact_dynamics.tumbling import Trajectory, free_motion
 from contact_dynamics.validation import FloatArray
 from contact_dynamics.world import Body, World
-from contact_dynamics_interfaces.srv import PredictTumbling
-from msg_adapters.fields import AnswerTable
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+    from contact_dynamics.viewing.picture import Picture
+    from contact_dynamics_interfaces.srv import PredictTumbling
+    from msg_adapters.fields import AnswerTable
 
 if TYPE_CHECKING:  # the server must not import a viewer
     from matplotlib.figure import Figure
