@@ -27,6 +27,7 @@ from msg_adapters.geometry import (
     mass_properties_from_msg,
     vector_from_msg,
 )
+from msg_adapters.rejected_fields import STATE_OF_BODY, check_unread
 from msg_adapters.stamps import stamp_ns_from_msg
 
 if TYPE_CHECKING:
@@ -159,28 +160,29 @@ def asked_subjects(
     """Return the bodies that a request names or describes, and where the state of each comes from.
 
     Raises:
-        ContactDynamicsError: as in `asked_subject`, or names or lists do not suit each other.
+        ContactDynamicsError: as in `asked_subject`, or two bodies have one name, or lists differ in length.
     """
-    names, stamp_ns = list(request.body_names), _stamp_ns(request)
-    is_explicit = request.state_source == request.STATE_EXPLICIT
-    for field, needed in (("states", is_explicit), ("inertias", False), ("applied_wrenches", False)):
-        if len(found := getattr(request, field)) not in ({len(names)} if needed else {0, len(names)}):
-            allowed = f"{len(names)}, one for each of body_names{'' if needed else ', or none'}"
-            raise InvalidFieldError(field, f"{len(found)} elements", allowed)
-    known, bodies = {body.name for body in world.bodies}, []
-    for i, (name, inertia) in enumerate(
-        zip(names, request.inertias or [Inertia()] * len(names), strict=True)
-    ):
-        field = f"body_names[{i}]"
-        if not name or name in names[:i]:
+    stamp_ns, count = _stamp_ns(request), len(request.states)
+    for field in ("inertias", "applied_wrenches"):
+        if len(found := getattr(request, field)) not in {0, count}:
+            raise InvalidFieldError(field, f"{len(found)} elements", f"{count}, one for each state, or none")
+    known = {body.name for body in world.bodies}
+    bodies: list[Body] = []
+    states: list[StateSource] = []
+    for i, msg in enumerate(request.states):
+        name, field = msg.body_name, f"states[{i}].body_name"
+        if not name or name in {body.name for body in bodies}:
             raise InvalidFieldError(field, repr(name), "a name that no other body has")
+        inertia = request.inertias[i] if request.inertias else Inertia()
         is_new = name not in known and _is_described(inertia)
-        body = asked_body("" if is_new else name, inertia, world, field=field)
+        body = asked_body("" if is_new else name, inertia, world, field=field, described=f"inertias[{i}]")
         bodies.append(replace(body, name=name) if is_new else body)
-    if not is_explicit:
-        return tuple(bodies), (_published(stamp_ns),) * len(bodies)
-    explicit = enumerate(zip(request.states, bodies, strict=True))
-    return tuple(bodies), tuple(_explicit(f"states[{i}]", *each, world_frame) for i, each in explicit)
+        check_unread(request, STATE_OF_BODY, part=msg, path=f"states[{i}].")
+        is_explicit = request.state_source == request.STATE_EXPLICIT
+        states.append(
+            _explicit(f"states[{i}]", msg, bodies[i], world_frame) if is_explicit else _published(stamp_ns)
+        )
+    return tuple(bodies), tuple(states)
 
 
 def asked_other(
@@ -203,8 +205,10 @@ def _explicit(field: str, msg: BodyStateMsg, body: Body, world_frame: str) -> Kn
     return known_state_from_msg(msg, world_frame=world_frame, p_FB_F=body.p_FB_F, field=field)
 
 
-def asked_body(name: str, inertia: Inertia, world: World, *, field: str = "body_name") -> Body:
-    """Return the body that a request names, in that field, or describes.
+def asked_body(
+    name: str, inertia: Inertia, world: World, *, field: str = "body_name", described: str = ""
+) -> Body:
+    """Return the body that a request names in one field, or describes in another.
 
     Raises:
         ContactDynamicsError: the name is not known or too long, or the numbers are no body's.
@@ -212,7 +216,7 @@ def asked_body(name: str, inertia: Inertia, world: World, *, field: str = "body_
     if len(name) > LONGEST_NAME:
         raise TooLargeError(field, f"{len(name)} characters", f"at most {LONGEST_NAME}")
     is_described = _is_described(inertia)
-    described = field.replace("body_names", "inertias").replace("body_name", "inertia")
+    described = described or field.replace("body_name", "inertia")
     if not name and not is_described:
         raise InvalidFieldError(field, name, f"the name of a configured body, unless {described}.m is > 0")
     # The body is looked up here, because an explicit state is that of the body's published frame.

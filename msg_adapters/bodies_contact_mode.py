@@ -23,11 +23,14 @@ if TYPE_CHECKING:
 
     from contact_dynamics.world import World
 
+_WORLD: Final = -1
+"""Where another body's index is, if a body touches the world."""
+
 _FIELDS: Final = {
     **{f"contacts.{name}": field for name, field in CONTACT_FIELDS.items()},
     "forces_W": "applied_wrenches",
     "torques_W": "applied_wrenches",
-    "bodies": "body_names",
+    "bodies": "states",
 }
 
 
@@ -54,44 +57,33 @@ def bodies_contact_mode_question_from_msg(
         raise renamed(error, _FIELDS) from None
 
 
-def _asked_pairs(request: PredictBodiesContactMode.Request, n: int) -> list[tuple[int, int | None]]:
+def _asked_pairs(request: PredictBodiesContactMode.Request, n: int) -> tuple[tuple[int, int | None], ...]:
     """Return the bodies that touch at each of n contacts."""
-    names = list(request.body_names)
-    others = request.other_bodies or [""] * n
-    for field, given in (("contact_bodies", request.contact_bodies), ("other_bodies", others)):
-        if len(given) != n:
-            raise InvalidFieldError(field, f"{len(given)} names", f"{n}, one for each contact")
-    for i, (first, second) in enumerate(zip(request.contact_bodies, others, strict=True)):
-        if first not in names:
-            raise InvalidFieldError(f"contact_bodies[{i}]", repr(first), f"one of body_names, {names}")
-        if second not in {"", *names} - {first}:
-            allowed = f"another one of body_names, {names}, or left empty for the world"
-            raise InvalidFieldError(f"other_bodies[{i}]", repr(second), allowed)
-    return _pairs(names, request.contact_bodies, others)
-
-
-def _pairs(
-    names: Sequence[str], firsts: Sequence[str], seconds: Sequence[str]
-) -> list[tuple[int, int | None]]:
-    numbers = {name: i for i, name in enumerate(names)}
-    return [(numbers[first], numbers.get(second)) for first, second in zip(firsts, seconds, strict=True)]
+    count = len(request.states)
+    for field in ("contact_bodies", "other_bodies"):
+        if len(given := getattr(request, field)) != n:
+            raise InvalidFieldError(field, f"{len(given)} indices", f"{n}, one for each contact")
+    for i, (first, second) in enumerate(zip(request.contact_bodies, request.other_bodies, strict=True)):
+        if first >= count:
+            raise InvalidFieldError(f"contact_bodies[{i}]", first, f"an index of states, below {count}")
+        if second == first or not _WORLD <= second < count:
+            allowed = f"another index of states, below {count}, or {_WORLD} for the world"
+            raise InvalidFieldError(f"other_bodies[{i}]", second, allowed)
+    return _read_pairs(request)
 
 
 def _write_pairs(
-    msg: PredictBodiesContactMode.Response,
-    _: str,
-    pairs: Sequence[tuple[int, int | None]],
-    frame: fields.Frame,
+    msg: PredictBodiesContactMode.Response, _: str, pairs: Sequence[tuple[int, int | None]], __: fields.Frame
 ) -> None:
-    names = [body.name for body in frame.answer.bodies]  # type: ignore[attr-defined]  # of this answer
-    msg.contact_bodies = [names[first] for first, _ in pairs]
-    msg.other_bodies = ["" if second is None else names[second] for _, second in pairs]
+    msg.contact_bodies = [first for first, _ in pairs]
+    msg.other_bodies = [_WORLD if second is None else second for _, second in pairs]
 
 
 def _read_pairs(
-    msg: PredictBodiesContactMode.Response, _: str, __: fields.Frame
+    msg: PredictBodiesContactMode.Request | PredictBodiesContactMode.Response, *_: object
 ) -> tuple[tuple[int, int | None], ...]:
-    return tuple(_pairs([state.body_name for state in msg.states], msg.contact_bodies, msg.other_bodies))
+    pairs = zip(msg.contact_bodies, msg.other_bodies, strict=True)
+    return tuple((int(first), None if second == _WORLD else int(second)) for first, second in pairs)
 
 
 MODE_OF_BODIES: Final = fields.Table(

@@ -81,20 +81,26 @@ class ReadIf(NamedTuple):
     conditions: tuple[When, ...]
 
 
-def check_unread(request: object, table: tuple[ReadIf, ...]) -> None:
-    """Raise `InvalidFieldError` for a value in a field that is not read, and name the field."""
-    _, rows = _ROWS.get((type(request), id(table))) or _rows(type(request), table)
+def check_unread(
+    request: object, table: tuple[ReadIf, ...], *, part: object | None = None, path: str = ""
+) -> None:
+    """Raise `InvalidFieldError` for a value in a field that is not read, and name the field.
+
+    The fields may be those of a part of the request, to which ``path`` leads.
+    """
+    message = request if part is None else part
+    _, rows = _ROWS.get((type(message), id(table))) or _rows(type(message), table)
     for read, defaults, fields, conditions in rows:
-        if read(request) == defaults or any(condition.is_met(request) for condition in conditions):
+        if read(message) == defaults or any(condition.is_met(request) for condition in conditions):
             continue
-        for leaf in _leaves(request, *fields):
-            found = leaf.read(request)
+        for leaf in _leaves(message, *fields):
+            found = leaf.read(message)
             if found != leaf.default and not _is_empty(found):
                 known = _either([condition.words(request) for condition in conditions])
                 allowed = f"left out unless {known}"
                 shown = found if isinstance(found, str) or not hasattr(found, "__iter__") else list(found)
                 hint = conditions[0].remedy(request)
-                raise InvalidFieldError(leaf.path, shown, allowed, hint)
+                raise InvalidFieldError(path + leaf.path, shown, allowed, hint)
 
 
 _Row: TypeAlias = tuple[
@@ -207,8 +213,13 @@ CONTACT_MODE: Final = (
 CONTACT_MODE_BATCH: Final = (*_CONTACT_MODES, ReadIf(("margin_length",), (When("include_margins"),)))
 """The fields of `PredictContactModeBatch`."""
 
-BODIES_CONTACT_MODE: Final = (ReadIf(("states",), (_EXPLICIT,)), _STAMP)
+BODIES_CONTACT_MODE: Final = (_STAMP,)
 """The fields of `PredictBodiesContactMode`."""
+
+STATE_OF_BODY: Final = (
+    ReadIf(("header", "pose", "linear_velocity", "angular_velocity", "covariance"), (_EXPLICIT,)),
+)
+"""The fields of each of its states, beside the body's name."""
 
 IMPACT: Final = (
     *_FITTED_STATE,

@@ -186,14 +186,14 @@ class Rows:
 
     def _row(self, answered: Answered) -> _Waiting:
         row: dict[str, Cell] = dict.fromkeys(COLUMNS)
-        body, names = answered.question.get("body_name", ""), answered.question.get("body_names")
+        body = answered.question.get("body_name", "")
         row |= {
             "log": self._log,
             "service": answered.service_name,
             "number": answered.number,
             "log_time_ns": answered.log_time_ns,
             "asked_ns": answered.asked_ns,
-            "body": ", ".join(names) if isinstance(names, list) else str(body),
+            "body": body if isinstance(body, str) else "",
             "question": json.dumps(dict(answered.question)),
             "status": answered.status,
             "message": answered.message,

@@ -173,7 +173,7 @@ def test_status_codes_are_the_same_in_all_services() -> None:
         (PredictImpactBatch.Response, "outcomes", MAX_STATES),
         (PredictContactModeBatch.Request, "contact_counts", MAX_CANDIDATES),
         (PredictContactModeBatch.Request, "torques", 3 * MAX_CANDIDATES),
-        (PredictBodiesContactMode.Request, "body_names", MAX_BODIES),
+        (PredictBodiesContactMode.Request, "states", MAX_BODIES),
         (PredictBodiesContactMode.Request, "applied_wrenches", MAX_BODIES),
         (PredictBodiesContactMode.Request, "other_bodies", MAX_CONTACTS),
         (PredictToss.Request, "parameter_covariance", MAX_PARAMETERS**2),

@@ -48,8 +48,8 @@ FROM_MSG = {
 }
 
 
-def _explicit() -> BodyState:
-    state = BodyState()
+def _explicit(name: str = "") -> BodyState:
+    state = BodyState(body_name=name)
     state.linear_velocity.x = 1.0
     return state
 
@@ -88,7 +88,7 @@ def _values(field: str, request: Any) -> Any:
 SLAB = Inertia(m=1.0, ixx=1.0, iyy=1.0, izz=1.0)
 MESSAGES: dict[str, Any] = {
     "other_state": [_explicit()],
-    "states": [_explicit(), BodyState()],
+    "states": [_explicit("cube"), BodyState(body_name="slab")],
     "inertias": [Inertia(m=3.0, ixx=3.0, iyy=3.0, izz=3.0), SLAB],
     "applied_wrenches": [Wrench(torque=Vector3(y=2.0)), Wrench()],
 }
@@ -103,9 +103,8 @@ LISTED: dict[str, Any] = {
     "forces": [1.0, 0.0, 0.0],
     "torques": [1.0, 0.0, 0.0],
     "contact_counts": [1],
-    "body_names": ["cube", "plate"],
-    "contact_bodies": ["slab"],
-    "other_bodies": ["slab"],
+    "contact_bodies": [1],
+    "other_bodies": [1],
     "contact_positions": [0.0, 0.0, 0.1],
     "contact_normals": [0.0, 0.6, 0.8],
 }
@@ -156,9 +155,9 @@ def requests_of(service: Any) -> Iterator[Any]:
 def _requests_about_two() -> Iterator[PredictBodiesContactMode.Request]:
     """The cube, and a slab that is not configured, with a contact of the cube with the world."""
     for source in CHOICES["state_source"]:
-        request = PredictBodiesContactMode.Request(body_names=["cube", "slab"], state_source=source)
-        request.inertias, request.contact_bodies = [Inertia(), SLAB], ["cube"]
-        request.states = [BodyState(), BodyState()] if source == request.STATE_EXPLICIT else []
+        request = PredictBodiesContactMode.Request(state_source=source, inertias=[Inertia(), SLAB])
+        request.states = [BodyState(body_name="cube"), BodyState(body_name="slab")]
+        request.contact_bodies, request.other_bodies = [0], [-1]
         _one_contact(request.contacts).frictions = [0.7]
         yield request
 

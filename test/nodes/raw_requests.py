@@ -20,6 +20,8 @@ import rclpy
 from rclpy.node import Node
 from rclpy.serialization import serialize_message
 
+from contact_dynamics_interfaces.msg import BodyState
+from contact_dynamics_interfaces.srv import PredictBodiesContactMode
 from running_server import PATIENCE_S, SERVICES
 
 BETWEEN_S = 0.002
@@ -126,8 +128,8 @@ def drawn(draw: random.Random, request: bytes) -> bytes:
 
 def about_the_brick(service: Any) -> Any:
     """A request that names the brick."""
-    if hasattr(service.Request, "body_names"):
-        return service.Request(body_names=["brick"])
+    if service is PredictBodiesContactMode:
+        return service.Request(states=[BodyState(body_name="brick")])
     return service.Request(body_name="brick")
 
 

@@ -32,7 +32,7 @@ from rosbags.highlevel import AnyReader
 
 from contact_dynamics.recording import BagReader, decode, service_calls
 from contact_dynamics.replay.verify import verify_log
-from contact_dynamics_interfaces.msg import BodyStates
+from contact_dynamics_interfaces.msg import BodyState, BodyStates
 from contact_dynamics_interfaces.srv import (
     PredictBodiesContactMode,
     PredictContactMode,
@@ -118,9 +118,9 @@ def questions(number: int) -> list[Any]:
     modes.state, modes.forces = mode.state, [0.1 * number, 0.0, 0.0, 0.0, 0.0, 9.0]
     toss = PredictToss.Request(body_name="brick", max_alternatives=0, samples=5, seed=number)
     toss.state_source, toss.state.pose.position.z = toss.STATE_EXPLICIT, 0.2
-    held = PredictBodiesContactMode.Request(body_names=["brick"], velocity_tolerance=100.0)
+    held = PredictBodiesContactMode.Request(states=[BodyState(body_name="brick")], velocity_tolerance=100.0)
     held.contacts.positions, held.contacts.normals = [0.0, 0.0, 1.0], [0.0, 0.0, 1.0]
-    held.contacts.frictions, held.contact_bodies = [0.1 * number], ["brick"]
+    held.contacts.frictions, held.contact_bodies, held.other_bodies = [0.1 * number], [0], [-1]
     return [
         modes,
         tumbling,
@@ -137,7 +137,7 @@ def questions(number: int) -> list[Any]:
         toss,
         PredictToss.Request(body_name="brick", rate=0.0),
         held,
-        PredictBodiesContactMode.Request(body_names=["brick"]),  # no contact is given
+        PredictBodiesContactMode.Request(states=held.states),  # no contact is given
     ]
 
 

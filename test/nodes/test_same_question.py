@@ -243,10 +243,9 @@ REQUESTS: dict[str, tuple[Any, Fields]] = {
     "contact modes of bodies": (
         PredictBodiesContactMode,
         {
-            "body_names": ["rod", "brick"],
             "state_source": 1,
             "states": [
-                {"pose": {"position": {"z": 0.06}}, "header": {"stamp": {"sec": 3}}},
+                {"pose": {"position": {"z": 0.06}}, "header": {"stamp": {"sec": 3}}, "body_name": "rod"},
                 {"pose": {"position": {"z": 0.025}}, "body_name": "brick"},
             ],
             "inertias": [ROD["inertia"], {}],
@@ -255,8 +254,8 @@ REQUESTS: dict[str, tuple[Any, Fields]] = {
                 "normals": [0.0, 0.0, 1.0] * 4,
                 "frictions": [0.5, 0.4, 0.3, 0.2],
             },
-            "contact_bodies": ["brick", "brick", "brick", "rod"],
-            "other_bodies": ["", "", "", "brick"],
+            "contact_bodies": [1, 1, 1, 0],
+            "other_bodies": [-1, -1, -1, 1],
             "applied_wrenches": [{"force": {"x": 4.0}}, {"torque": {"z": 0.01}}],
             "velocity_tolerance": 1e-6,
         },

@@ -11,6 +11,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from geometry_msgs.msg import Inertia
 
 from contact_dynamics.contact.contact import ContactSet
 from contact_dynamics.contact_modes import BodiesContactProblem, contact_modes
@@ -170,13 +171,12 @@ def test_what_is_not_allowed_is_named(
 
 def asked() -> PredictBodiesContactMode.Request:
     """The stack, as a client asks about it."""
-    request = PredictBodiesContactMode.Request(body_names=["lower", "upper"], state_source=1)
-    request.states = [BodyStateMsg(), BodyStateMsg()]
+    request = PredictBodiesContactMode.Request(state_source=1)
+    request.states = [BodyStateMsg(body_name="lower"), BodyStateMsg(body_name="upper")]
     request.states[0].pose.position.z, request.states[1].pose.position.z = 0.05, 0.15
     request.contacts.positions = np.ravel(FEET).tolist()
     request.contacts.normals, request.contacts.frictions = [0.0, 0.0, 1.0] * 8, [0.5] * 8
-    request.contact_bodies = ["lower"] * 4 + ["upper"] * 4
-    request.other_bodies = [""] * 4 + ["lower"] * 4
+    request.contact_bodies, request.other_bodies = [0] * 4 + [1] * 4, [-1] * 4 + [0] * 4
     return request
 
 
@@ -185,27 +185,28 @@ def question_of(request: PredictBodiesContactMode.Request) -> Any:
     return service.question_of(request, world=WORLD, world_frame="world")
 
 
-def test_names_in_a_request_are_the_indices_of_pairs() -> None:
+def test_indices_in_a_request_are_those_of_pairs() -> None:
     assert question_of(asked()).pairs == PAIRS
+
+
+TWICE = [BodyStateMsg(body_name="lower"), BodyStateMsg(body_name="lower")]
 
 
 @pytest.mark.parametrize(
     ("fields", "words"),
     [
-        ({"body_names": ["lower", "lower"]}, "body_names[1] must be a name that no other body has"),
-        ({"body_names": ["lower", ""]}, "body_names[1] must be a name that no other body has"),
-        ({"states": [BodyStateMsg()]}, "states must be 2, one for each of body_names, got 1 elements"),
+        ({"states": TWICE}, "states[1].body_name must be a name that no other body has"),
+        ({"states": [BodyStateMsg()]}, "states[0].body_name must be a name that no other body has"),
         (
-            {"states": [BodyStateMsg(), BodyStateMsg(body_name="lower")]},
-            "states[1].body_name must be 'upper'",
+            {"state_source": 0},
+            "states[0].pose.position.z must be left out unless state_source is STATE_",
         ),
-        ({"contact_bodies": ["lower"] * 7}, "contact_bodies must be 8, one for each contact, got 7 names"),
-        (
-            {"contact_bodies": ["lower"] * 4 + ["upper"] * 3 + ["upp"]},
-            "contact_bodies[7] must be one of body_names",
-        ),
-        ({"other_bodies": [""] * 7 + ["lowr"]}, "other_bodies[7] must be another one of body_names"),
-        ({"other_bodies": [""] * 7 + ["upper"]}, "other_bodies[7] must be another one of body_names"),
+        ({"inertias": [Inertia()]}, "inertias must be 2, one for each state, or none, got 1 elements"),
+        ({"contact_bodies": [0] * 7}, "contact_bodies must be 8, one for each contact, got 7 indices"),
+        ({"contact_bodies": [0] * 4 + [1, 1, 1, 2]}, "contact_bodies[7] must be an index of states, below 2"),
+        ({"other_bodies": [-1] * 7 + [2]}, "other_bodies[7] must be another index of states"),
+        ({"other_bodies": [-1] * 7 + [-2]}, "other_bodies[7] must be another index of states"),
+        ({"other_bodies": [-1] * 7 + [1]}, "other_bodies[7] must be another index of states"),
     ],
 )
 def test_what_a_request_may_not_say_is_named(fields: dict[str, Any], words: str) -> None:

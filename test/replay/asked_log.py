@@ -17,7 +17,7 @@ from builtin_interfaces.msg import Time
 from geometry_msgs.msg import PoseStamped, TwistStamped
 from nav_msgs.msg import Odometry
 
-from contact_dynamics_interfaces.msg import BodyStates
+from contact_dynamics_interfaces.msg import BodyState, BodyStates
 from contact_dynamics_interfaces.srv import (
     PredictBodiesContactMode,
     PredictContactMode,
@@ -160,10 +160,12 @@ def about_candidates(number: int) -> list[Any]:
 
 def about_bodies() -> PredictBodiesContactMode.Request:
     """The brick and the ball, from topics of two kinds, which touch somewhere."""
-    touching = PredictBodiesContactMode.Request(body_names=["brick", "ball"])
+    touching = PredictBodiesContactMode.Request(
+        states=[BodyState(body_name=name) for name in ("brick", "ball")]
+    )
     touching.contacts.positions, touching.contacts.normals = [0.0, 0.0, 1.0], [1.0, 0.0, 0.0]
     touching.contacts.frictions, touching.velocity_tolerance = [0.3], 100.0
-    touching.contact_bodies, touching.other_bodies = ["ball"], ["brick"]
+    touching.contact_bodies, touching.other_bodies = [1], [0]
     return touching
 
 

@@ -58,7 +58,9 @@ def test_a_row_for_each_question_of_a_log(asked: Asked, tmp_path: Path) -> None:
     for row in rows:
         is_later = row["state"] not in {"", "0"}  # the first one has the question of a batch
         asked_about = {} if is_later else json.loads(row["question"])
-        names = asked_about.get("body_names", [asked_about.get("body_name", "")])
+        names = [asked_about.get("body_name", "")]
+        if row["service"] == "predict_bodies_contact_mode":
+            names = [state["body_name"] for state in asked_about["states"]]
         assert is_later or ", ".join(names) == row["body"]
         assert not row["predicted_qw"] or float(row["predicted_qw"]) >= 0.0
         is_impact = row["service"] == "predict_impact" and row["status"] == "OK"
