@@ -136,7 +136,7 @@ def _draw_coverage(figure: Any, rows: Sequence[Comparison]) -> None:
         )
     axes.set_xlabel("stated probability, %")
     axes.set_ylabel("measured values inside, %")
-    axes.set_title("do the covariances cover what came?")
+    axes.set_title("coverage of the prediction regions")
     axes.grid(visible=True, alpha=0.3)
     axes.legend()
 

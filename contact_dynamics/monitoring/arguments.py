@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The arguments of `contact-dynamics monitor`. This file imports what help needs, and no more."""
+"""The arguments of `contact-dynamics monitor`. This file imports only what `--help` needs."""
 
 from __future__ import annotations
 

@@ -161,7 +161,7 @@ class ImpactEvidence(Record):
         return float(self.probabilities(np.square([self.distance]), COMPONENTS)[0])
 
     def probabilities(self, squares: FloatArray, components: int) -> FloatArray:
-        """Return probabilities of larger squared distances of so many components."""
+        """Return the probabilities of larger squared distances with that number of components."""
         from scipy.stats import chi2, f
 
         if math.isinf(self.freedom):

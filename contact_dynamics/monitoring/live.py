@@ -104,7 +104,7 @@ class Monitoring(Receiving):
         return super().close()
 
     def remove(self) -> None:
-        """Take what this made from the node."""
+        """Remove the publisher and everything else that this object added to the node."""
         self._node.destroy_publisher(self._publisher)
         super().remove()
 

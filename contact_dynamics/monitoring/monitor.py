@@ -201,7 +201,7 @@ class Monitor:
 
     def _monitored(self, event: FoundEvent, known: dict[float, Context]) -> MonitoredEvent:
         state = event.state
-        told = MonitoredEvent(
+        record = MonitoredEvent(
             kind=event.kind,
             body=event.body,
             surface=event.surface,
@@ -219,39 +219,39 @@ class Monitor:
         wanted = Method.NEWEST if event.mode else Method.FIT
         row = next((row for row in rows if row.method is wanted), None)
         if row is None:
-            return replace(told, problem="too few states before the event")
+            return replace(record, problem="too few states before the event")
         if row.refused:
-            return replace(told, problem=row.refused)
+            return replace(record, problem=row.refused)
         if row.predicted_mode == ModeVerdict.IMPACT.name:
-            return replace(told, problem="an impact comes first")
-        told = replace(
-            told,
+            return replace(record, problem="an impact comes first")
+        record = replace(
+            record,
             predicted=row.predicted,
             time_error=row.time_error,
             predicted_mode=row.predicted_mode,
             as_predicted=row.mode_is_right,
         )
         if event.kind is EventKind.IMPACT:
-            return self._impact(told, event, known[self._settings.horizon])
-        return _with_region(told, row)
+            return self._impact(record, event, known[self._settings.horizon])
+        return _with_region(record, row)
 
-    def _impact(self, told: MonitoredEvent, event: FoundEvent, known: Context) -> MonitoredEvent:
+    def _impact(self, record: MonitoredEvent, event: FoundEvent, known: Context) -> MonitoredEvent:
         """Return an impact with its region, and with what it shows about the surface."""
         evidence: ImpactEvidence | None = None
         try:
             answer = first_answer(event, known, self._asking)
             evidence = evidence_of(event, answer, self.informed.world, self._settings.error)
         except ContactDynamicsError as error:
-            return replace(told, problem=str(error))
+            return replace(record, problem=str(error))
         if evidence is None:
-            return replace(told, problem="several contacts, whose prediction has no region")
+            return replace(record, problem="several contacts, whose prediction has no region")
         report = self._changes[event.surface].add(evidence)
         evidence = report.impact
         values, stds = evidence.estimates()
         probability = evidence.probability()
         regions = _regions(probability)
         return replace(
-            told,
+            record,
             distance=evidence.distance,
             probability=probability,
             regions=regions,
@@ -262,20 +262,20 @@ class Monitor:
         )
 
 
-def _with_region(told: MonitoredEvent, row: Comparison) -> MonitoredEvent:
+def _with_region(record: MonitoredEvent, row: Comparison) -> MonitoredEvent:
     if row.distance is None:
-        return told
+        return record
     from scipy.stats import chi2
 
     probability = float(chi2.sf(row.distance**2, row.degrees))
-    return replace(told, distance=row.distance, probability=probability, regions=_regions(probability))
+    return replace(record, distance=row.distance, probability=probability, regions=_regions(probability))
 
 
 def _regions(probability: float) -> tuple[bool, ...]:
     return tuple(probability >= 1.0 - region for region in REGIONS)
 
 
-class _Told(NamedTuple):
+class _Returned(NamedTuple):
     """An event that was returned, from its beginning to when it was compared."""
 
     kind: EventKind
@@ -289,7 +289,7 @@ class _Track:
     def __init__(self) -> None:
         self.states: deque[tuple[KnownState, int]] = deque()
         self.newest_ns = 0
-        self._told: list[_Told] = []
+        self._returned: list[_Returned] = []
         self._final_ns = 0  # no new event is before it
 
     def add(self, state: KnownState, arrival_ns: int) -> None:
@@ -314,19 +314,21 @@ class _Track:
     def close(self, until_ns: int) -> None:
         """Note that all events up to then were returned."""
         self._final_ns = until_ns
-        self._told = [each for each in self._told if each.time_ns > self.newest_ns - to_ns(2.0 * KEPT)]
+        self._returned = [
+            each for each in self._returned if each.time_ns > self.newest_ns - to_ns(2.0 * KEPT)
+        ]
 
     def _is_new(self, event: FoundEvent, until_ns: int) -> bool:
         within_ns = 0 if event.mode else to_ns(SAME_EVENT)
         lasted_ns = to_ns(event.time - event.since) if event.mode else 0
-        now = _Told(event.kind, event.time_ns - lasted_ns - within_ns, event.time_ns + within_ns)
+        now = _Returned(event.kind, event.time_ns - lasted_ns - within_ns, event.time_ns + within_ns)
         if event.time_ns > until_ns and lasted_ns < to_ns(SETTLED):
             return False
-        for k, each in enumerate(self._told):
+        for k, each in enumerate(self._returned):
             if each.kind is now.kind and each.since_ns <= now.time_ns and now.since_ns <= each.time_ns:
-                self._told[k] = _Told(each.kind, each.since_ns, max(each.time_ns, now.time_ns))
+                self._returned[k] = _Returned(each.kind, each.since_ns, max(each.time_ns, now.time_ns))
                 return False
         if now.time_ns < self._final_ns:
             return False
-        self._told.append(now)
+        self._returned.append(now)
         return True

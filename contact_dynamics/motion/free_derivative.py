@@ -15,9 +15,9 @@ dL = L. The last one needs A(t), with theta = A(t) theta_0 at dL = 0. Then any c
 In the body's axes A is B = R^T A R_0 with dB/dt = (I^-1 [L_B] - [w_B]) B. Its coefficients are elliptic
 functions of time with the period T of the polhode. B is computed on one period by Gauss collocation, in
 pieces so short that its error is rounding. B(T) does not change L and w and keeps volumes, so B(T) - 1 is
-nilpotent and B(n T) = 1 + n (B(T) - 1). So the cost does not grow with time. A steady spin has a constant
-coefficient with K^3 = -nu^2 K, and a closed form. For motion that turns by less than `SMALL_TURN`, dL is part
-of the equations that are solved, because e would grow without bounds.
+nilpotent and B(n T) = 1 + n (B(T) - 1). The cost therefore does not grow with time. A steady spin has a
+constant coefficient with K^3 = -nu^2 K, and a closed form. For motion that turns by less than `SMALL_TURN`,
+dL is part of the solved equations, because e would grow without bounds.
 
 Accuracy, relative to the largest entry: 1e-13 for compact bodies. Thin rods amplify rounding, to 1e-9 where
 moments are as 1 to 1000 and to some percent at 1 to 50 000. Near the middle axis neighbours part by a factor
@@ -190,9 +190,9 @@ def _largest(matrices: FloatArray) -> FloatArray:
 def _edges(farthest: float, rate: float, w: float) -> FloatArray:
     """Return where pieces begin and end, (n + 1,), s, from 0 to ``farthest``.
 
-    In a nearly symmetric body a piece may last for many turns, w t, and B grows with w t. So the first piece
-    is cut again at a tenth of its length, a hundredth and so on. Otherwise the small numbers early in it
-    would lose their digits beside the large ones late in it.
+    In a nearly symmetric body a piece may last for many turns, w t, and B grows with w t. The first piece is
+    therefore divided again at a tenth of its length, a hundredth and so on. Otherwise the small numbers early
+    in it would lose their digits beside the large ones late in it.
     """
     count = max(math.ceil(farthest * rate / PIECE), 1)
     length = farthest / count

@@ -42,7 +42,7 @@ if TYPE_CHECKING:
     from contact_dynamics.validation import FloatArray
 
 THIRD_OF_A_TURN: Final = 2.0 * math.pi / 3.0
-"""rad. A turn that is nearer than this to the one expected is told apart from those a whole turn on."""
+"""rad. A turn that is closer than this to the expected one is distinguished from those a whole turn away."""
 
 MAX_NOISE_RATIO: Final = 3.0
 """Root mean square of residuals, in standard deviations, up to which they fit the noise. Nine times the

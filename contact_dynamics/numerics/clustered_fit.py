@@ -3,13 +3,13 @@
 
 Observations come in groups. Each has several whitened residuals, and belongs to a cluster, such as one
 recording. Gauss's and Newton's steps, damped as Levenberg and Marquardt do, are taken with Huber's weights,
-by the size of an observation's residuals together. An observation beyond `REJECTED` counts for nothing.
+by the norm of an observation's residuals. Observations beyond `REJECTED` have no weight.
 
 The covariance is the jackknife's over clusters, in one step from the estimate: with the information H and
 the score g of all clusters, leaving out cluster i moves the estimate by (H - H_i)^-1 g_i (Bell and McCaffrey,
-Survey Methodology 2002, "CR3"). So observations of one cluster may be correlated, and residuals may be larger
-than assumed. H has the second derivatives of Huber's cost. Where clusters are few, the covariance is drawn
-towards a multiple of H^-1, and with too few it is H^-1.
+Survey Methodology 2002, "CR3"). Observations of one cluster may therefore be correlated, and residuals may be
+larger than assumed. H contains the second derivatives of Huber's cost. With few clusters, the covariance is
+shrunk towards a multiple of H^-1, and with too few, it is H^-1.
 
 Parameters are in standard units, the size of what is plausible beforehand. A direction along which the data
 leave a standard deviation of more than one unit is undetermined: the estimate does not move along it. The

@@ -1,11 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
-"""This file turns the constants of a motion into the functions of time that `theta` evaluates.
+"""Converts the constants of a motion to the functions of time that `theta` evaluates.
 
-Phases grow linearly with time. Here they lose no digits modulo one, over any number of turns. The rate and
-the offset are double-doubles (unevaluated sums of two doubles, 32 digits). The product of the rate with a
-time is formed together with its rounding error (Dekker 1971), and whole turns are taken off before anything
-is rounded. So the error of the remainder is about 1e-32 of the number of turns, plus the last bit of the
-remainder itself.
+Phases grow linearly with time, and are computed modulo one without loss of digits over any number of turns.
+Rate and offset are double-doubles (unevaluated sums of two doubles, 32 digits). The product of rate and time
+is computed together with its rounding error (Dekker 1971), and whole turns are subtracted before rounding.
+The error of the remainder is therefore about 1e-32 of the number of turns, plus its last bit.
 """
 
 from __future__ import annotations

@@ -1,10 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
-"""This file computes elliptic integrals without cancellation, in doubles or in decimal arithmetic.
+"""Computes elliptic integrals without cancellation, in doubles or in decimal arithmetic.
 
-All take the complementary modulus k' = sqrt(1 - m) or Carlson's symmetric arguments, never the parameter m
-itself. Near the middle axis m equals 1 to more digits than a double has, and the difference 1 - m matters.
+All functions take the complementary modulus k' = sqrt(1 - m) or Carlson's symmetric arguments instead of the
+parameter m, because near the middle axis m equals 1 to more digits than a double has, and the difference
+1 - m matters.
 
-Both kinds of number of `arithmetic` go through the same formulas. Decimals have the digits of the caller's
+The formulas are the same for all types of numbers of `arithmetic`. Decimals have the digits of the caller's
 context.
 """
 

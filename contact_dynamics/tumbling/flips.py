@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A body that spins near its middle axis flips (the Dzhanibekov effect). This file says when, and how surely.
+"""The times of flips of a body that spins near its middle axis (the Dzhanibekov effect), with deviations.
 
-Lecture 25, polhodes. The body spins about its middle axis for a while, turns that axis over, spins on, and
-turns it back. The middle of a flip is where the angular velocity has no component along the middle axis.
+Lecture 25, polhodes. The body spins about its middle axis for some time, reverses that axis, continues to
+spin, and reverses it again. In the middle of a flip, the angular velocity has no component along the middle
+axis.
 """
 
 from __future__ import annotations
@@ -38,7 +39,7 @@ NEAR_SEPARATRIX: Final = 0.1
 again as for small m. A nearly axisymmetric rod turns its middle axis over as well, but evenly."""
 
 DRAWS: Final = 500
-"""Number of pairs of opposite errors. They give a deviation to 3 % in about a millisecond."""
+"""Number of pairs of opposite errors. They determine a deviation to 3 % in about a millisecond."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
@@ -55,7 +56,7 @@ class Flips(Record):
 
 
 MAX_FLIPS: Final = 10_000
-"""Largest number of flips that are asked for at once. Their deviations take 80 MB."""
+"""Maximum number of flips per call. Their deviations require 80 MB."""
 
 
 def next_flips(motion: FreeMotion, count: int, *, covariance: ArrayLike | None = None) -> Flips:

@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
-"""This file follows many free motions at once, each at its own time, such as samples of an uncertain state.
+"""Computes many free motions together, each at its own time, such as samples of an uncertain state.
 
 The formulas are those for one motion, over arrays and in doubles. Errors of attitude grow by about 1e-16 of
-the angle turned, times the motion's sensitivity. A motion that is on the separatrix to the last bit is
-computed as if it were 1e-300 off it.
+the angle turned, times the sensitivity of the motion. A motion that is exactly on the separatrix is computed
+as if it were 1e-300 off it.
 
-The constants of the rotations and of their theta functions take most of the time.
+Most of the time is spent on the constants of the rotations and of their theta functions.
 """
 
 from __future__ import annotations
@@ -38,7 +38,7 @@ CHUNK: Final = 4096
 """Number of rotations computed at a time. Their intermediate arrays stay in the processor's cache."""
 
 _IN_STEADY_SPIN: Final[Any] = {"divide": "ignore", "invalid": "ignore", "over": "ignore"}
-"""What NumPy need not tell: rows of steady spin divide by zero, and are computed apart."""
+"""NumPy warnings to ignore: rows of steady spin divide by zero, and are computed separately."""
 
 
 def states_of_many(
@@ -106,7 +106,7 @@ def _times(seconds: ArrayLike, n: int) -> FloatArray:
 
 
 def _unit(q: FloatArray) -> FloatArray:
-    """Return quaternions (n, 4) scaled to norm 1, or refuse those that do not have it within tolerance."""
+    """Return quaternions (n, 4) scaled to norm 1, or reject those whose norm is out of tolerance."""
     norms = np.sqrt(np.einsum("ni,ni->n", q, q))
     off = np.flatnonzero(np.abs(norms - 1.0) > UNIT_LENGTH_TOLERANCE)
     if len(off):

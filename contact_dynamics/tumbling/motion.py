@@ -1,17 +1,17 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A free rigid body tumbles without torque, and its centre of mass flies in a parabola (lecture 25).
+"""The motion of a free rigid body: torque-free rotation, and a parabola of the centre of mass (lecture 25).
 
-No integrator steps through time. Any time, past or future, costs the same, and the error does not grow with
-the number of revolutions. The constants are computed in extended precision from the exact values of the
-doubles given. The same formulas hold where the body or the motion is degenerate (sphere, axis of symmetry,
+Because the motion is not integrated, all times, past or future, cost the same, and the error does not grow
+with the number of revolutions. The constants are computed in extended precision from the exact values of the
+given doubles. The same formulas apply to bodies and motions that are degenerate (sphere, axis of symmetry,
 principal axis, separatrix) or nearly so.
 
 Frames: W is the world, B the body at its centre of mass, P the principal axes in Jacobi's order, and L the
 world turned so that its z axis is along the angular momentum.
 
-Not covered: torque, drag, gravity gradients. The answer is exact to rounding for the doubles given. Near the
-middle axis a small change of the doubles changes it much. `contact_dynamics.tumbling.poinsot_construction`
-says how much.
+Not covered: torque, drag, gravity gradients. The result is exact to rounding for the given doubles. Near the
+middle axis, it is sensitive to small changes of these doubles;
+`contact_dynamics.tumbling.poinsot_construction` computes the sensitivity.
 """
 
 from __future__ import annotations
@@ -297,7 +297,7 @@ def free_motion(
 
 
 def check_extent(state: BodyState, gravity_W: FloatArray) -> None:
-    """Refuse numbers whose powers leave the range of doubles. The error names the field."""
+    """Reject numbers whose powers leave the range of doubles. The error names the field."""
     numbers = {
         "p_WB_W": state.p_WB_W,
         "v_WB_W": state.v_WB_W,
@@ -309,11 +309,11 @@ def check_extent(state: BodyState, gravity_W: FloatArray) -> None:
 
 
 MAX_TURNED: Final = 1e16
-"""Angle, rad, beyond which times are refused. Neighbouring doubles are then more than a turn apart, and the
-phases' double-doubles no longer hold the last bits of a turn."""
+"""Angle, rad, beyond which times are rejected. Neighbouring doubles are then more than a turn apart, and the
+double-doubles of phases no longer contain the last bits of a turn."""
 
 REMEMBERED: Final = 128
-"""Number of rotations whose constants are kept, 3 kB each, since a state is often asked about twice."""
+"""Number of rotations whose constants are cached, 3 kB each, since states are often used twice."""
 
 _IDENTITY: Final = (0.0, 0.0, 0.0, 1.0)
 

@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: Apache-2.0
-"""In Poinsot's picture of a free rotation the energy ellipsoid rolls on the invariable plane (lecture 25).
+"""Poinsot's construction of a free rotation: the energy ellipsoid rolls on the invariable plane (lecture 25).
 
 In the space of angular velocities the ellipsoid w^T I w = 2 T is fixed in the body and the plane w . L = 2 T
 is fixed in the world. They touch at w. Its trace on the ellipsoid is the polhode, which is closed. Its trace
 on the plane is the herpolhode, which in general never closes.
 
 Near the middle axis the body flips (the Dzhanibekov effect), and the time of a flip depends on the last
-digits of the state. `sensitivity` and `next_flips` say how much.
+digits of the state. `sensitivity` and `next_flips` quantify this.
 """
 
 from __future__ import annotations
@@ -172,7 +172,7 @@ def _sensitivity_of_spin(motion: FreeMotion) -> float:
 
 
 MAX_POINTS: Final = 1_000_000
-"""Points of rolling curves, which take some three seconds and 200 MB."""
+"""Maximum number of points of rolling curves, which require about three seconds and 200 MB."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)

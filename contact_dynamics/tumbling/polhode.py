@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The constants of a torque-free rotation, and its kind, follow from its initial angular velocity.
+"""The constants of a torque-free rotation, and its regime, from the initial angular velocity.
 
 Jacobi's order of axes: the angular velocity circles axis 3, which is the major axis (largest moment) where
 L^2 > 2 T I_2 and the minor one where L^2 < 2 T I_2; axis 2 is the middle one. With a, b, c > 0,

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Quotients of theta functions give the attitude of a tumbling body about its angular momentum.
+"""Theta functions, whose quotients are the attitude of a tumbling body relative to its angular momentum.
 
 With the z axis along L, the Cayley-Klein parameters alpha = q_w + i q_z and beta = q_x + i q_y of the
 attitude of the principal frame are, up to a common positive factor that normalisation removes,
