@@ -157,11 +157,13 @@ class UntilContact(AtRate):
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
 class UntilPlane(AtRate):
-    """Samples at a steady rate that end when a point of the body reaches a plane.
+    """Samples at a steady rate that end when a point of the body reaches a plane from the normal's side.
+
+    A point that begins behind the plane first has to pass it, as a ball thrown up past the height of a catch.
 
     Attributes:
         plane_point: (3,), m, a point of the plane, world.
-        plane_normal: (3,), unit, its normal, world axes.
+        plane_normal: (3,), unit, its normal, world axes, towards the side from which the point comes.
         body_point: (3,), m, the point of the body, in its published frame F.
         rate: Hz, > 0, number of samples a second. None means the default.
         duration: s, >= 0, how far to go. None means the default horizon.
@@ -235,7 +237,8 @@ def times_of(
     """Return the times, (n,), s after the state's stamp, at which a motion is asked for, and what ends them.
 
     Raises:
-        InvalidFieldError: the motion would be integrated or searched for too long.
+        InvalidFieldError: the motion would be integrated or searched for too long, or a point is behind its
+            plane and moves away.
         TooLargeError: more samples than `MAX_SAMPLES`.
         NoContactError: contact is asked for of a body that has no shape.
     """
@@ -255,7 +258,7 @@ def times_of(
     if isinstance(sampling, UntilContact):
         event = _contact(subject, motion, context, duration)
     elif isinstance(sampling, UntilPlane):
-        event = _plane_reached(sampling, subject, motion, duration)
+        event = _plane_reached(sampling, subject, motion, duration, context.defaults.distance_tolerance)
     return _at_rate(rate, duration, None if event is None else event.seconds), event
 
 
@@ -285,7 +288,11 @@ def _contact(
 
 
 def _plane_reached(
-    sampling: UntilPlane, subject: Subject, motion: FreeMotion | ForcedMotion, duration: float
+    sampling: UntilPlane,
+    subject: Subject,
+    motion: FreeMotion | ForcedMotion,
+    duration: float,
+    tolerance: float,
 ) -> Event | None:
     point_B = sampling.body_point - subject.body.p_FB_F
     found = first_contact(
@@ -298,6 +305,10 @@ def _plane_reached(
     )
     if found is None:
         return None
+    depth = float(sampling.plane_normal @ (sampling.plane_point - found.p_WC_W))
+    if found.seconds == 0.0 and depth > tolerance:
+        behind = f"a normal away from the point, which is {depth:.6g} m behind the plane and moves away"
+        raise InvalidFieldError("plane_normal", behind, "a normal towards the side the point comes from")
     return Event(
         kind=EventKind.PLANE_REACHED,
         seconds=found.seconds,

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -105,6 +106,21 @@ def test_it_ends_where_a_point_reaches_a_plane() -> None:
     assert found.event is not None
     assert (found.event.kind, found.event.surface) == (EventKind.PLANE_REACHED, "")
     assert found.event.seconds == pytest.approx(math.sqrt(2.0 * 0.4 / GRAVITY), abs=ROUNDING)
+
+
+def test_a_point_reaches_a_plane_from_the_side_of_its_normal() -> None:
+    """Thrown up past a height, it reaches it on the way down, or on the way up if the normal points down."""
+    sampling = UntilPlane(plane_point=[0, 0, 1.5], plane_normal=[0, 0, 1], body_point=[0, 0, 0], duration=3.0)
+    up = TumblingQuestion(body=CUBE, state=state(v=(0.0, 0.0, 5.0)), sampling=sampling)
+    root = math.sqrt(5.0**2 - 2.0 * GRAVITY * 0.5)
+    for normal, seconds in (([0, 0, 1], (5.0 + root) / GRAVITY), ([0, 0, -1], (5.0 - root) / GRAVITY)):
+        event = answer(replace(up, sampling=replace(sampling, plane_normal=normal))).event
+        assert event is not None
+        assert event.seconds == pytest.approx(seconds, abs=ROUNDING)
+    with pytest.raises(
+        InvalidFieldError, match=r"plane_normal must be .* 0\.5 m behind the plane and moves away"
+    ):
+        answer(replace(up, state=state(v=(0.0, 0.0, -1.0))))
 
 
 def test_a_torque_spins_it_up_and_leaves_no_poinsot() -> None:
