@@ -18,6 +18,7 @@ from architecture.test_doors import CHAPTERS
 from contact_dynamics import (
     Body,
     BodyState,
+    ContactDynamicsError,
     ContactSet,
     PlanarBody,
     PlanarContact,
@@ -31,18 +32,13 @@ from contact_dynamics import (
     landing,
     motion,
     questions,
+    sampled_toss,
     spatial_impact,
     state_covariance,
     toss,
 )
 from contact_dynamics.contact_modes import contact_modes
-from contact_dynamics.errors import (
-    ContactDynamicsError,
-    InvalidFieldError,
-    UnknownArgumentError,
-    WrongTypeError,
-)
-from contact_dynamics.toss import sampled_toss
+from contact_dynamics.errors import InvalidFieldError, UnknownArgumentError, WrongTypeError
 from hostile_values.shared import BALL, BOX, CONTACT, CONTACTS, FLOOR, ROD, STATE, TIP, WORLD
 
 TOUCH = PlanarContact(**TIP)

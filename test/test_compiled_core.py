@@ -25,8 +25,7 @@ from contact_dynamics.impact import (
     spatial_impacts,
     spatial_pair_impact,
 )
-from contact_dynamics.shapes import box
-from contact_dynamics.shapes.convex import ConvexShape
+from contact_dynamics.shapes import ConvexShape, box
 from contact_dynamics.toss import Toss, TossUncertainty, sampled_toss, toss
 
 SIZE = (0.15, 0.1, 0.06)

@@ -10,14 +10,12 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from contact_dynamics.contact.contact import MAX_CONTACTS, ContactSet
+from contact_dynamics.contact import ContactSet
+from contact_dynamics.contact.contact import MAX_CONTACTS
 from contact_dynamics.contact.found import find_contacts
 from contact_dynamics.errors import InvalidFieldError, TooLargeError, UnknownBodyError
-from contact_dynamics.rigid_body import inertia
-from contact_dynamics.rigid_body.body import BodyState, MassProperties
-from contact_dynamics.shapes import box, capsule, cylinder, sphere
-from contact_dynamics.shapes.convex import ConvexShape
-from contact_dynamics.shapes.obstacle import Obstacle
+from contact_dynamics.rigid_body import BodyState, MassProperties, inertia
+from contact_dynamics.shapes import ConvexShape, Obstacle, box, capsule, cylinder, sphere
 from contact_dynamics.world import MAX_VERTICES, Body, Surface, World, box_vertices
 
 STUFF = MassProperties(mass=1.0, I_B=np.eye(3))

@@ -11,19 +11,18 @@ from typing import Any
 import pytest
 
 from contact_dynamics.contact.contact import MAX_CONTACTS
-from contact_dynamics.contact_modes.result import ModeVerdict, Refusal
+from contact_dynamics.contact_modes import ModeVerdict, Refusal
 from contact_dynamics.impact import ImpactOutcome, PathEvent, RestitutionLaw, SequenceEnd
 from contact_dynamics.measured.events import EventKind as MonitoredKind
 from contact_dynamics.monitoring.evidence import REGIONS, Parameter
-from contact_dynamics.motion.integrated import Method
+from contact_dynamics.motion import Method
 from contact_dynamics.questions import EventKind, Problem
 from contact_dynamics.questions.bodies_contact_modes import MAX_BODIES
 from contact_dynamics.questions.many import MAX_STATES
 from contact_dynamics.questions.many_contact_modes import MAX_CANDIDATES
 from contact_dynamics.questions.sample_times import MAX_SAMPLES
 from contact_dynamics.questions.tumbling import FLIPS, MAX_COVARIANCES, MAX_CURVE_POINTS
-from contact_dynamics.toss import TossEnd, TossEventKind, UndecidedReason
-from contact_dynamics.toss.distribution import BranchKind
+from contact_dynamics.toss import BranchKind, TossEnd, TossEventKind, UndecidedReason
 from contact_dynamics.toss.uncertainty import MAX_PARAMETERS
 from contact_dynamics_interfaces.msg import (
     BodyStates,

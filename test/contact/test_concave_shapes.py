@@ -7,16 +7,14 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
+from contact_dynamics import Body, BodyState, Obstacle, free_motion
 from contact_dynamics.errors import ConcaveShapeWarning, WrongTypeError
 from contact_dynamics.nodes.parameter_reader import ParameterSource
 from contact_dynamics.nodes.parameters import read_server_parameters
 from contact_dynamics.rigid_body import inertia
-from contact_dynamics.rigid_body.body import BodyState
 from contact_dynamics.rigid_body.inertia import MassDistribution
 from contact_dynamics.shapes.convex import box, polyhedron
-from contact_dynamics.shapes.obstacle import Obstacle
-from contact_dynamics.tumbling import free_motion
-from contact_dynamics.world import Body, box_vertices
+from contact_dynamics.world import box_vertices
 from sweeps import seeds
 
 # Cross sections in the x, y plane, and the boxes that they consist of: sizes and middles.

@@ -6,22 +6,13 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from contact_dynamics.contact import ContactUncertainty
-from contact_dynamics.contact.contact import Contact, ContactSet
-from contact_dynamics.contact.curvature import Curvatures, alike
+from contact_dynamics.contact import Contact, ContactSet, ContactUncertainty, Curvatures
+from contact_dynamics.contact.curvature import alike
 from contact_dynamics.contact.friction import linearised_cone
 from contact_dynamics.errors import InvalidFieldError
 from contact_dynamics.numerics.vectors import tangents_towards
-from contact_dynamics.plane.types import (
-    OrientedPoint,
-    PlanarBody,
-    PlanarContact,
-    PlanarWrench,
-    Turn,
-    acceleration_centre,
-    force_dual,
-    friction_cone,
-)
+from contact_dynamics.plane import PlanarBody, PlanarContact, PlanarWrench
+from contact_dynamics.plane.types import OrientedPoint, Turn, acceleration_centre, force_dual, friction_cone
 
 UP = [0.0, 0.0, 1.0]
 WALL = Contact(

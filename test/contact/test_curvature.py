@@ -11,11 +11,10 @@ import numpy as np
 import pytest
 from mpmath import mp, mpf
 
-from contact_dynamics.contact.contact import ContactSet
-from contact_dynamics.contact.curvature import Curvatures
+from contact_dynamics.contact import ContactSet, Curvatures
 from contact_dynamics.contact.velocities import velocity_accelerations
 from contact_dynamics.errors import InvalidFieldError
-from contact_dynamics.plane.types import PlanarContact
+from contact_dynamics.plane import PlanarContact
 from oracles import moved_gaps as exact
 
 INF = math.inf

@@ -14,11 +14,10 @@ from scipy.spatial.transform import Rotation
 from contact_dynamics.contact.found import find_contacts, nearest_surface
 from contact_dynamics.contact.touches import RIM_POINTS
 from contact_dynamics.errors import InvalidFieldError, TooLargeError
-from contact_dynamics.rigid_body.body import BodyState, MassProperties
+from contact_dynamics.rigid_body import BodyState, MassProperties
+from contact_dynamics.shapes import ConvexShape, Obstacle, Rim
 from contact_dynamics.shapes.convex import (
     MAX_RIMS,
-    ConvexShape,
-    Rim,
     box,
     capsule,
     cone,
@@ -28,7 +27,6 @@ from contact_dynamics.shapes.convex import (
     rounded,
     sphere,
 )
-from contact_dynamics.shapes.obstacle import Obstacle
 from contact_dynamics.world import Body, Surface, World, box_vertices
 
 STUFF = MassProperties(mass=1.0, I_B=np.eye(3))

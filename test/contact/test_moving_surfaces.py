@@ -13,16 +13,11 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 import contact_dynamics as cd
+from contact_dynamics import impact_sequence, spatial_pair_impact
 from contact_dynamics.contact import spatial_contact_velocities
 from contact_dynamics.contact_modes import spatial_sliding_modes
 from contact_dynamics.errors import InvalidFieldError, NotSupportedError
-from contact_dynamics.impact import (
-    impact_sequence,
-    jamming_impact,
-    outcomes_over_interleavings,
-    spatial_impact_distribution,
-    spatial_pair_impact,
-)
+from contact_dynamics.impact import jamming_impact, outcomes_over_interleavings, spatial_impact_distribution
 from contact_dynamics.plane import PlaneOfMotion, project_onto_plane
 from contact_dynamics.questions import ContactModeQuestion, Context, ImpactQuestion, ask
 

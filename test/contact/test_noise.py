@@ -12,14 +12,13 @@ from scipy.optimize import minimize
 from scipy.spatial.transform import Rotation
 from scipy.stats import chi2
 
-from contact_dynamics.contact.contact import ContactSet
+from contact_dynamics import Body, BodyState, ContactSet, MassProperties, Surface, World
 from contact_dynamics.contact.found import find_contacts
 from contact_dynamics.contact.noise import QUANTILES, REST_LEVEL, NoisyState, resting, touching
 from contact_dynamics.errors import InvalidFieldError
-from contact_dynamics.rigid_body.body import BodyState, MassProperties
-from contact_dynamics.shapes.convex import ConvexShape, cylinder, rounded, sphere
+from contact_dynamics.shapes import ConvexShape
 from contact_dynamics.shapes.convex import box as box_of
-from contact_dynamics.world import Body, Surface, World
+from contact_dynamics.shapes.convex import cylinder, rounded, sphere
 from sweeps import seeds
 
 SIZE = np.array([0.15, 0.09, 0.05])

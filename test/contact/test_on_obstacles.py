@@ -11,24 +11,15 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 
-from contact_dynamics.contact.contact import ContactSet
-from contact_dynamics.contact.curvature import Curvatures
+from contact_dynamics.contact import ContactSet, Curvatures
 from contact_dynamics.contact.found import find_contacts
 from contact_dynamics.contact.touches import site_of
 from contact_dynamics.errors import InvalidFieldError, NoContactError, NotSupportedError
 from contact_dynamics.landing.earliest import first_touch, next_landing
-from contact_dynamics.rigid_body.body import BodyState, MassProperties
-from contact_dynamics.shapes.convex import (
-    ConvexShape,
-    box,
-    box_vertices,
-    capsule,
-    cylinder,
-    polyhedron,
-    rounded,
-    sphere,
-)
-from contact_dynamics.shapes.obstacle import Obstacle, closest_points
+from contact_dynamics.rigid_body import BodyState, MassProperties
+from contact_dynamics.shapes import ConvexShape, Obstacle
+from contact_dynamics.shapes.convex import box, box_vertices, capsule, cylinder, polyhedron, rounded, sphere
+from contact_dynamics.shapes.obstacle import closest_points
 from contact_dynamics.tumbling import free_motion
 from contact_dynamics.world import Body, Surface, World
 from oracles.hull_distance import distance, overlap_support

@@ -14,12 +14,10 @@ with warnings.catch_warnings():
     warnings.simplefilter("ignore", DeprecationWarning)  # of Python 3.10, at rerun's import
     from viewing.answers import impact_answer
 
-from contact_dynamics.contact.contact import ContactSet
+from contact_dynamics import BodyState, ContactSet, MassProperties, free_motion
 from contact_dynamics.diagrams.after_impact import LATE_S, SPAN_S, AwaitedImpacts
 from contact_dynamics.diagrams.words import after_impact_in_words
 from contact_dynamics.questions import ImpactAnswer
-from contact_dynamics.rigid_body.body import BodyState, MassProperties
-from contact_dynamics.tumbling import free_motion
 
 GRAVITY = np.array([0.0, 0.0, -9.81])
 BRICK = MassProperties(mass=0.4, I_B=np.diag([3.5e-4, 8.3e-4, 1.02e-3]))

@@ -19,13 +19,8 @@ from contact_dynamics.diagrams.mode_map import (
     widest_places,
 )
 from contact_dynamics.diagrams.wrench_chart import DirectionChart, ForceChart, ForceDualChart, WrenchChart
-from contact_dynamics.plane.types import (
-    PlanarBody,
-    PlanarContact,
-    PlanarVelocity,
-    PlanarWrench,
-    acceleration_centre,
-)
+from contact_dynamics.plane import PlanarBody, PlanarContact, PlanarVelocity, PlanarWrench
+from contact_dynamics.plane.types import acceleration_centre
 from diagrams.marks_of import marks_of
 
 BODY = PlanarBody(mass=1.0, inertia=0.25)

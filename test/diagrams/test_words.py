@@ -9,8 +9,9 @@ from enum import IntEnum
 import numpy as np
 import pytest
 
-from contact_dynamics.contact import ContactSet, ContactUncertainty
-from contact_dynamics.contact_modes import Certainty, ModeVerdict, SpatialModeMargin
+from contact_dynamics import Body, BodyState, ContactSet, MassProperties, ModeVerdict
+from contact_dynamics.contact import ContactUncertainty
+from contact_dynamics.contact_modes import Certainty, SpatialModeMargin
 from contact_dynamics.contact_modes.letters import mode_in_words
 from contact_dynamics.diagrams.words import (
     CERTAINTIES,
@@ -23,9 +24,7 @@ from contact_dynamics.diagrams.words import (
 )
 from contact_dynamics.impact import ImpactOutcome, SequenceEnd
 from contact_dynamics.questions import ContactModeQuestion, ask
-from contact_dynamics.rigid_body.body import BodyState, MassProperties
 from contact_dynamics.tumbling import Regime
-from contact_dynamics.world import Body
 
 
 @pytest.mark.parametrize(

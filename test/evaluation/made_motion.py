@@ -7,13 +7,12 @@ from typing import NamedTuple
 
 import numpy as np
 
+from contact_dynamics import Body, BodyState, MassProperties, Surface, World
 from contact_dynamics.evaluation.asking import Informed
 from contact_dynamics.evaluation.recording import Recording
 from contact_dynamics.measured.motion import MeasuredMotion, StateColumns, motions_of
-from contact_dynamics.questions.context import Defaults
-from contact_dynamics.rigid_body.body import BodyState, MassProperties
+from contact_dynamics.questions import Defaults
 from contact_dynamics.shapes import box, sphere
-from contact_dynamics.world import Body, Surface, World
 from oracles.bouncing_toss import MOMENTS, RATE, Leg, toss
 from oracles.rigid_flight import fly
 

@@ -6,6 +6,7 @@ from dataclasses import replace
 import numpy as np
 
 from contact_dynamics import (
+    BodiesContactProblem,
     Body,
     Contact,
     ContactSet,
@@ -17,9 +18,14 @@ from contact_dynamics import (
     SpatialContactProblem,
     Surface,
     World,
+    closure,
     find_contacts,
     free_motion,
+    largest_acceleration,
     largest_load,
+    largest_spin,
+    largest_tilt,
+    least_friction,
     next_landing,
     next_meeting,
     shapes,
@@ -30,15 +36,7 @@ from contact_dynamics.contact import (
     linearised_cone,
     spatial_contact_velocities,
 )
-from contact_dynamics.contact_modes import (
-    BodiesContactProblem,
-    ResponseContactProblem,
-    closure,
-    largest_acceleration,
-    largest_spin,
-    largest_tilt,
-    least_friction,
-)
+from contact_dynamics.contact_modes import ResponseContactProblem
 from contact_dynamics.landing import first_contact
 from hostile_values.rigid_bodies import HAMMER
 from hostile_values.shared import (

@@ -3,8 +3,7 @@
 
 import numpy as np
 
-from contact_dynamics import toss
-from contact_dynamics.impact import RestitutionLaw
+from contact_dynamics import RestitutionLaw, toss
 from hostile_values.shared import BOX, STATE, WORLD, Calls
 
 TOSSED = {"body": BOX, "state": STATE, "world": WORLD}

@@ -10,15 +10,9 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from contact_dynamics.contact.contact import Contact
+from contact_dynamics import BodyState, Contact, MassProperties, spatial_impact
 from contact_dynamics.errors import SeparatingContactError
-from contact_dynamics.impact import (
-    ImpactDistribution,
-    ImpactOutcome,
-    spatial_impact,
-    spatial_impact_distribution,
-)
-from contact_dynamics.rigid_body.body import BodyState, MassProperties
+from contact_dynamics.impact import ImpactDistribution, ImpactOutcome, spatial_impact_distribution
 
 BODY = MassProperties(mass=1.0, I_B=np.eye(3))
 IDENTITY = np.array([0.0, 0.0, 0.0, 1.0])

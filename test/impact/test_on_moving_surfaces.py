@@ -10,13 +10,12 @@ import numpy as np
 import pytest
 
 import contact_dynamics as cd
+from contact_dynamics import RestitutionLaw, bodies_impact
 from contact_dynamics.errors import InvalidFieldError, SeparatingContactError
 from contact_dynamics.impact import (
     ResolvedImpact,
-    RestitutionLaw,
     SeveralContactsLaw,
     StrikingBodies,
-    bodies_impact,
     outcomes_over_orders,
     spatial_impacts,
 )

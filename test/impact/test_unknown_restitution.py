@@ -35,10 +35,9 @@ from contact_dynamics.impact import (
     spatial_impact_distribution,
     spatial_pair_impact,
 )
+from contact_dynamics.questions import ContactModeQuestion, ImpactQuestion
 from contact_dynamics.questions import contact_modes as modes_questions
 from contact_dynamics.questions import impact as impact_questions
-from contact_dynamics.questions.contact_modes import ContactModeQuestion
-from contact_dynamics.questions.impact_question import ImpactQuestion
 
 BODY = MassProperties(mass=1.0, I_B=np.diag([0.1, 0.1, 0.1]))
 FALLING = BodyState(p_WB_W=[0, 0, 0.1], q_WB=[0, 0, 0, 1], v_WB_W=[0, 0, -1])

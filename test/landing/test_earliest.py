@@ -10,13 +10,11 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from contact_dynamics import Body, BodyState, MassProperties, Surface, World, free_motion, impact_sequence
 from contact_dynamics.contact.found import find_contacts
 from contact_dynamics.errors import NoContactError
-from contact_dynamics.impact import impact_sequence
 from contact_dynamics.landing.earliest import next_landing
-from contact_dynamics.rigid_body.body import BodyState, MassProperties
-from contact_dynamics.tumbling import free_motion
-from contact_dynamics.world import Body, Surface, World, box_vertices
+from contact_dynamics.world import box_vertices
 
 G = 10.0
 FLOOR = Surface(name="floor", p_WS_W=np.zeros(3), normal_W=[0.0, 0.0, 1.0], friction=0.5, restitution=0.5)

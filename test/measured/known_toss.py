@@ -5,9 +5,8 @@ from __future__ import annotations
 
 import numpy as np
 
+from contact_dynamics import Body, MassProperties, Surface
 from contact_dynamics.measured.recorded_toss import Toss
-from contact_dynamics.rigid_body.body import MassProperties
-from contact_dynamics.world import Body, Surface
 from oracles.bouncing_toss import MOMENTS, RATE, KnownToss
 
 P_NOISE = 2e-4

@@ -9,10 +9,7 @@ import numpy as np
 from hypothesis import strategies as st
 
 from contact_dynamics.contact.uncertainty import EXACT_CONTACTS
-from contact_dynamics.impact import (
-    ImpactOutcome,
-    RestitutionLaw,
-)
+from contact_dynamics.impact import ImpactOutcome, RestitutionLaw
 from contact_dynamics.questions import ContactModeQuestion
 from contact_dynamics.questions.many import (
     ManyImpactsAnswer,

@@ -11,21 +11,14 @@ import numpy as np
 from hypothesis import assume
 from hypothesis import strategies as st
 
-from contact_dynamics.contact.contact import ContactSet
+from contact_dynamics import Body, BodyState, ContactSet, MassProperties, World
 from contact_dynamics.contact.curvature import alike
-from contact_dynamics.plane.projection import PlaneOfMotion
-from contact_dynamics.questions import (
-    FitQuality,
-    PublishedState,
-    UncertainState,
-)
-from contact_dynamics.questions.many import (
-    ManyStates,
-)
+from contact_dynamics.plane import PlaneOfMotion
+from contact_dynamics.questions import FitQuality, PublishedState, UncertainState
+from contact_dynamics.questions.many import ManyStates
 from contact_dynamics.questions.subject import changed_body
-from contact_dynamics.rigid_body.body import BodyState, MassProperties
 from contact_dynamics.tumbling import Trajectory
-from contact_dynamics.world import Body, World, box_vertices
+from contact_dynamics.world import box_vertices
 
 T = TypeVar("T")
 NO_OFFSET = np.zeros(3)

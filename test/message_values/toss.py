@@ -6,18 +6,15 @@ from __future__ import annotations
 import numpy as np
 from hypothesis import strategies as st
 
-from contact_dynamics.impact import (
-    ImpactOutcome,
-    RestitutionLaw,
-    SeveralContactsLaw,
-)
-from contact_dynamics.questions import (
-    TossAnswer,
-    TossPath,
-    TossQuestion,
-    TossSampling,
-)
+from contact_dynamics.impact import ImpactOutcome, RestitutionLaw, SeveralContactsLaw
+from contact_dynamics.questions import TossAnswer, TossPath, TossQuestion, TossSampling
 from contact_dynamics.toss import (
+    Branch,
+    BranchKind,
+    EventRegions,
+    Ghosts,
+    Region,
+    RestSpread,
     TossDistribution,
     TossEnd,
     TossEnergy,
@@ -27,7 +24,6 @@ from contact_dynamics.toss import (
     Undecided,
     UndecidedReason,
 )
-from contact_dynamics.toss.distribution import Branch, BranchKind, EventRegions, Ghosts, Region, RestSpread
 from message_values.shared import (
     NAMES,
     NO_OFFSET,

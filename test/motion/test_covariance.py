@@ -8,18 +8,12 @@ import math
 import numpy as np
 import pytest
 
+from contact_dynamics import BodyState, MassProperties, free_motion
 from contact_dynamics.errors import InvalidFieldError
-from contact_dynamics.motion.covariance import (
-    CarriedCovariance,
-    PropagationMethod,
-    covariance_along,
-    propagate_covariance,
-)
-from contact_dynamics.motion.forces import ConstantWrench, Drag, WrenchAxes
+from contact_dynamics.motion import CarriedCovariance, ConstantWrench, Drag, PropagationMethod, WrenchAxes
+from contact_dynamics.motion.covariance import covariance_along, propagate_covariance
 from contact_dynamics.motion.free_fit import fit_free_motion
 from contact_dynamics.motion.integrated import forced_motion
-from contact_dynamics.rigid_body.body import BodyState, MassProperties
-from contact_dynamics.tumbling import free_motion
 from tumbling.known_motions import MOTIONS, motion_of
 
 TIMES = np.array([0.0, 0.1, 1.0, 5.0, -3.0])

@@ -9,13 +9,12 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
+from contact_dynamics import BodyState, MassProperties, free_motion
 from contact_dynamics.errors import InvalidFieldError
-from contact_dynamics.motion.forces import ConstantWrench, Drag, WrenchAxes
+from contact_dynamics.motion import ConstantWrench, Drag, WrenchAxes
 from contact_dynamics.motion.free_derivative import state_derivatives
 from contact_dynamics.motion.integrated import forced_motion
 from contact_dynamics.motion.integrated_derivative import forced_state_derivatives
-from contact_dynamics.rigid_body.body import BodyState, MassProperties
-from contact_dynamics.tumbling import free_motion
 from oracles.forced_stepped import stepped
 
 I_B = [[1.1, 0.1, -0.05], [0.1, 1.5, 0.2], [-0.05, 0.2, 1.9]]

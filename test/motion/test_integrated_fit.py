@@ -10,12 +10,11 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from contact_dynamics.errors import InvalidFieldError
-from contact_dynamics.motion.forces import ConstantWrench, Drag, WrenchAxes
+from contact_dynamics.motion import ConstantWrench, Drag, StateNoise, WrenchAxes
 from contact_dynamics.motion.free_fit import fit_free_motion
 from contact_dynamics.motion.integrated import forced_motion
 from contact_dynamics.motion.integrated_fit import fit_motion
-from contact_dynamics.motion.state_noise import StateNoise
-from contact_dynamics.rigid_body.body import BodyState, MassProperties
+from contact_dynamics.rigid_body import BodyState, MassProperties
 from motion.evidence import error, published
 
 BODY = MassProperties(mass=0.4, I_B=np.diag([3.5e-4, 8.3e-4, 1.02e-3]))

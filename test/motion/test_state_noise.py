@@ -10,13 +10,11 @@ import numpy as np
 import pytest
 from scipy.stats import chi2, multivariate_normal
 
+from contact_dynamics import BodyState, MassProperties, free_motion
 from contact_dynamics.errors import InvalidFieldError
-from contact_dynamics.motion import Drag, StateNoise, fit_free_motion, fit_motion, measured_noise
-from contact_dynamics.motion.free_fit import FitResult
+from contact_dynamics.motion import Drag, FitResult, StateNoise, fit_free_motion, fit_motion, measured_noise
 from contact_dynamics.motion.integrated import forced_motion
 from contact_dynamics.motion.state_noise import fit_whitened
-from contact_dynamics.rigid_body.body import BodyState, MassProperties
-from contact_dynamics.tumbling import free_motion
 from motion.evidence import error, turned
 
 BODY = MassProperties(mass=0.4, I_B=np.diag([3.5e-4, 8.3e-4, 1.02e-3]))

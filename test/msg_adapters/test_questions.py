@@ -11,14 +11,10 @@ import numpy as np
 import pytest
 
 from changed_requests import put
-from contact_dynamics.errors import (
-    FrameMismatchError,
-    InvalidFieldError,
-    TooLargeError,
-    UnknownBodyError,
-)
+from contact_dynamics.errors import FrameMismatchError, InvalidFieldError, TooLargeError, UnknownBodyError
 from contact_dynamics.impact import RestitutionLaw, SeveralContactsLaw
-from contact_dynamics.motion.forces import NO_WRENCH, WrenchAxes
+from contact_dynamics.motion import WrenchAxes
+from contact_dynamics.motion.forces import NO_WRENCH
 from contact_dynamics.questions import (
     AtRate,
     AtStamps,
@@ -30,7 +26,7 @@ from contact_dynamics.questions import (
     UntilPlane,
 )
 from contact_dynamics.questions.subject import NEWEST
-from contact_dynamics.rigid_body.body import BodyState
+from contact_dynamics.rigid_body import BodyState
 from contact_dynamics_interfaces.srv import PredictContactMode, PredictImpact, PredictToss, PredictTumbling
 from msg_adapters.contact_mode import contact_mode_question_from_msg
 from msg_adapters.impact import impact_question_from_msg

@@ -8,11 +8,10 @@ import math
 import numpy as np
 import pytest
 
-from contact_dynamics.contact.contact import ContactSet
+from contact_dynamics import BodyState, ContactSet
 from contact_dynamics.errors import OutOfPlaneError
+from contact_dynamics.plane import PlaneOfMotion
 from contact_dynamics.plane.lifting import check_mirrored, equal_shares, mirror_partners
-from contact_dynamics.plane.projection import PlaneOfMotion
-from contact_dynamics.rigid_body.body import BodyState
 
 PLANE = PlaneOfMotion(normal_W=[0.0, -1.0, 0.0])
 CENTRE = np.array([0.3, 0.2, 0.1])

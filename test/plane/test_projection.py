@@ -11,12 +11,11 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 
-from contact_dynamics.contact.contact import Contact, ContactSet
+from contact_dynamics import BodyState, Contact, ContactSet, MassProperties, planar_impact, spatial_impact
 from contact_dynamics.errors import OutOfPlaneError
-from contact_dynamics.impact import planar_impact, spatial_impact
+from contact_dynamics.plane import PlaneOfMotion
 from contact_dynamics.plane.plane_search import best_plane
-from contact_dynamics.plane.projection import PlaneOfMotion, project_onto_plane
-from contact_dynamics.rigid_body.body import BodyState, MassProperties
+from contact_dynamics.plane.projection import project_onto_plane
 
 BODY = MassProperties(mass=2.0, I_B=np.diag([0.2, 0.3, 0.4]))
 UP = np.array([0.0, 0.0, 1.0])

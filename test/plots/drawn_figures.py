@@ -12,13 +12,12 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from contact_dynamics.contact.contact import ContactSet
+from contact_dynamics.contact import ContactSet
 from contact_dynamics.contact_modes import PlanarContactProblem, contact_modes, mode_margins, wrench_sets
 from contact_dynamics.diagrams.planar_scene import planar_scene_of
 from contact_dynamics.diagrams.shape import drawn_shape
 from contact_dynamics.diagrams.wrench_chart import DirectionChart, ForceDualChart
-from contact_dynamics.plane.projection import PlaneOfMotion
-from contact_dynamics.plane.types import PlanarBody, PlanarContact, PlanarWrench
+from contact_dynamics.plane import PlanarBody, PlanarContact, PlanarWrench, PlaneOfMotion
 from contact_dynamics.plots import (
     draw_angular_momentum,
     draw_angular_velocity,
@@ -38,6 +37,7 @@ from contact_dynamics.plots import (
     draw_velocity,
 )
 from contact_dynamics.questions import (
+    AtTimes,
     ContactModeAnswer,
     ContactModeQuestion,
     Context,
@@ -49,17 +49,11 @@ from contact_dynamics.questions import (
     TossSampling,
     TumblingAnswer,
     TumblingQuestion,
+    UncertainState,
     ask,
 )
-from contact_dynamics.questions.many import (
-    ManyImpactsAnswer,
-    ManyImpactsQuestion,
-    ManyStates,
-    answer_impacts,
-)
-from contact_dynamics.questions.sample_times import AtTimes
-from contact_dynamics.questions.uncertain_state import UncertainState
-from contact_dynamics.rigid_body.body import BodyState, MassProperties
+from contact_dynamics.questions.many import ManyImpactsAnswer, ManyImpactsQuestion, ManyStates, answer_impacts
+from contact_dynamics.rigid_body import BodyState, MassProperties
 from contact_dynamics.shapes.convex import box
 from contact_dynamics.toss import TossUncertainty
 from contact_dynamics.world import Body, Surface, World

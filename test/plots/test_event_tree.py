@@ -16,12 +16,10 @@ from pathlib import Path
 
 from matplotlib.figure import Figure
 
+from contact_dynamics import BodyState, RestitutionLaw, Surface, World, sampled_toss
 from contact_dynamics.diagrams.toss_scene import MAX_FACES, rest_in_words
-from contact_dynamics.impact import RestitutionLaw
 from contact_dynamics.plots import draw_event_tree, save_figure
-from contact_dynamics.rigid_body.body import BodyState
-from contact_dynamics.toss import TossDistribution, sampled_toss
-from contact_dynamics.world import Surface, World
+from contact_dynamics.toss import TossDistribution
 from plots.drawn_figures import CUBE, SVG_DIGITS, points_in_svg
 
 

@@ -9,10 +9,10 @@ from typing import Any
 import numpy as np
 from hypothesis import strategies as st
 
-from contact_dynamics.contact.contact import ContactSet
+from contact_dynamics.contact import ContactSet
 from contact_dynamics.impact import RestitutionLaw, SeveralContactsLaw
-from contact_dynamics.motion.forces import ConstantWrench, Drag, WrenchAxes
-from contact_dynamics.plane.projection import PlaneOfMotion
+from contact_dynamics.motion import ConstantWrench, Drag, WrenchAxes
+from contact_dynamics.plane import PlaneOfMotion
 from contact_dynamics.questions import (
     AtRate,
     AtStamps,
@@ -34,9 +34,8 @@ from contact_dynamics.questions import (
 )
 from contact_dynamics.questions.many import ManyImpactsQuestion, ManyStates, ManyTumblingsQuestion
 from contact_dynamics.questions.many_contact_modes import ManyContactModesQuestion
-from contact_dynamics.rigid_body.body import BodyState, MassProperties
-from contact_dynamics.shapes.convex import ConvexShape
-from contact_dynamics.shapes.obstacle import Obstacle
+from contact_dynamics.rigid_body import BodyState, MassProperties
+from contact_dynamics.shapes import ConvexShape, Obstacle
 from contact_dynamics.toss import TossUncertainty
 from contact_dynamics.world import Body, Surface, World, box_vertices
 from message_values.many import asked_of_many

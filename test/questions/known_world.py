@@ -6,7 +6,7 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from contact_dynamics.contact.contact import ContactSet
+from contact_dynamics import Body, BodyState, ContactSet, MassProperties, Surface, World
 from contact_dynamics.questions import (
     AtTimes,
     ContactModeQuestion,
@@ -16,8 +16,7 @@ from contact_dynamics.questions import (
     TumblingQuestion,
     ask,
 )
-from contact_dynamics.rigid_body.body import BodyState, MassProperties
-from contact_dynamics.world import Body, Surface, World, box_vertices
+from contact_dynamics.world import box_vertices
 
 GRAVITY = 9.80665  # m/s^2
 MASS = 2.0  # kg

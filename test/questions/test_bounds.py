@@ -9,10 +9,10 @@ from typing import Any
 import numpy as np
 import pytest
 
-from contact_dynamics.contact.contact import ContactSet
-from contact_dynamics.errors import ContactDynamicsError, InvalidFieldError, TooLargeError
+from contact_dynamics import Body, ContactDynamicsError, ContactSet, MassProperties
+from contact_dynamics.errors import InvalidFieldError, TooLargeError
 from contact_dynamics.impact import SeveralContactsLaw
-from contact_dynamics.motion.forces import Drag
+from contact_dynamics.motion import Drag
 from contact_dynamics.questions import (
     AtRate,
     ContactModeQuestion,
@@ -27,8 +27,6 @@ from contact_dynamics.questions import (
     ask,
 )
 from contact_dynamics.questions.subject import changed_body
-from contact_dynamics.rigid_body.body import MassProperties
-from contact_dynamics.world import Body
 from message_words import says
 from questions.known_world import CONTEXT, CUBE, SIDE, WORLD, state
 

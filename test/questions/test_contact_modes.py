@@ -10,15 +10,13 @@ from typing import Any
 import numpy as np
 import pytest
 
-from contact_dynamics.contact.contact import ContactSet
-from contact_dynamics.contact_modes import Certainty, ModeVerdict
+from contact_dynamics import Body, BodyState, ContactSet, MassProperties, ModeVerdict, World
+from contact_dynamics.contact_modes import Certainty
 from contact_dynamics.errors import InvalidFieldError, NoContactError, OutOfPlaneError, TooLargeError
 from contact_dynamics.impact import ImpactOutcome
-from contact_dynamics.plane.projection import PlaneOfMotion
+from contact_dynamics.plane import PlaneOfMotion
 from contact_dynamics.questions import ContactModeQuestion, Problem, SettledImpact
 from contact_dynamics.questions.contact_modes import answer
-from contact_dynamics.rigid_body.body import BodyState, MassProperties
-from contact_dynamics.world import Body, World
 from questions.known_world import CONTEXT, CUBE, FRICTION, GRAVITY, MASS, RESTING, SIDE, below, state
 
 ROUNDING = 1e-12  # a few operations on numbers of order 1 to 10

@@ -9,17 +9,11 @@ from typing import Any
 import numpy as np
 import pytest
 
-from contact_dynamics.contact.contact import ContactSet
+from contact_dynamics import BodyState, ContactSet, RestitutionLaw
 from contact_dynamics.errors import InvalidFieldError, TooLargeError
-from contact_dynamics.impact import ImpactOutcome, RestitutionLaw
+from contact_dynamics.impact import ImpactOutcome
 from contact_dynamics.questions import AtTimes, Context, ImpactQuestion, TumblingQuestion, ask
-from contact_dynamics.questions.many import (
-    MAX_STATES,
-    ManyImpactsQuestion,
-    ManyStates,
-    ManyTumblingsQuestion,
-)
-from contact_dynamics.rigid_body.body import BodyState
+from contact_dynamics.questions.many import MAX_STATES, ManyImpactsQuestion, ManyStates, ManyTumblingsQuestion
 from questions.known_world import CUBE, WORLD
 
 COUNT = 40

@@ -10,14 +10,13 @@ import pytest
 from scipy.spatial.transform import Rotation
 from scipy.stats import chi2, ncx2
 
+from contact_dynamics import Body, BodyState, MassProperties, ModeVerdict, Surface, World
 from contact_dynamics.contact.noise import REST_LEVEL
-from contact_dynamics.contact_modes import ModeVerdict
 from contact_dynamics.errors import InvalidFieldError
 from contact_dynamics.questions import ContactModeAnswer, ContactModeQuestion, Context, UncertainState, ask
 from contact_dynamics.questions.many_contact_modes import ManyContactModesQuestion
 from contact_dynamics.questions.many_contact_modes import answer as answer_many
-from contact_dynamics.rigid_body.body import BodyState, MassProperties
-from contact_dynamics.world import Body, Surface, World, box_vertices
+from contact_dynamics.world import box_vertices
 
 WEIGHT, FRICTION = 0.4 * 9.80665, 0.3  # N
 BRICK = Body(

@@ -8,6 +8,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from contact_dynamics import Body, BodyState, MassProperties
 from contact_dynamics.errors import (
     InvalidFieldError,
     NoStateError,
@@ -15,9 +16,8 @@ from contact_dynamics.errors import (
     StaleStateError,
     UnknownBodyError,
 )
-from contact_dynamics.motion.forces import ConstantWrench, Drag
+from contact_dynamics.motion import ConstantWrench, Drag, Method
 from contact_dynamics.motion.free_fit import fit_free_motion
-from contact_dynamics.motion.integrated import Method
 from contact_dynamics.questions import (
     AtTimes,
     Context,
@@ -28,9 +28,7 @@ from contact_dynamics.questions import (
     tumbling,
 )
 from contact_dynamics.questions.subject import changed_body, subject_of
-from contact_dynamics.rigid_body.body import BodyState, MassProperties
 from contact_dynamics.rotations.many import matrices_of
-from contact_dynamics.world import Body
 from questions.known_world import CUBE, GRAVITY, MASS, WORLD, state
 
 MS = 1_000_000  # ns

@@ -11,8 +11,7 @@ import pytest
 from contact_dynamics.errors import ContactDynamicsError, InvalidFieldError, TooLargeError
 from contact_dynamics.impact import RestitutionLaw, SeveralContactsLaw
 from contact_dynamics.questions import Context, TossQuestion, TossSampling, UncertainState, ask
-from contact_dynamics.rigid_body import inertia
-from contact_dynamics.rigid_body.body import BodyState
+from contact_dynamics.rigid_body import BodyState, inertia
 from contact_dynamics.shapes import box
 from contact_dynamics.toss import TossEnd, TossEventKind, TossUncertainty, toss
 from contact_dynamics.world import Body, Surface, World

@@ -10,14 +10,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from contact_dynamics.errors import (
-    InvalidFieldError,
-    NoContactError,
-    TooLargeError,
-    UnknownBodyError,
-)
-from contact_dynamics.motion.forces import ConstantWrench, Drag, WrenchAxes
-from contact_dynamics.motion.integrated import Method
+from contact_dynamics.errors import InvalidFieldError, NoContactError, TooLargeError, UnknownBodyError
+from contact_dynamics.motion import ConstantWrench, Drag, Method, WrenchAxes
 from contact_dynamics.questions import (
     AtRate,
     AtStamps,

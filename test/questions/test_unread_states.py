@@ -10,16 +10,10 @@ from typing import Any
 import numpy as np
 import pytest
 
-from contact_dynamics.errors import (
-    ContactDynamicsError,
-    InvalidFieldError,
-    NoStateError,
-    StaleStateError,
-    WrongTypeError,
-)
+from contact_dynamics import BodyState, ContactDynamicsError
+from contact_dynamics.errors import InvalidFieldError, NoStateError, StaleStateError, WrongTypeError
 from contact_dynamics.questions import StateStore
 from contact_dynamics.recording import BagReader, BagWriter, service_calls
-from contact_dynamics.rigid_body.body import BodyState
 
 
 def state(stamp_ns: int) -> BodyState:

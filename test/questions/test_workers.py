@@ -18,6 +18,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from contact_dynamics import Body, BodyState, MassProperties, Surface, World
 from contact_dynamics.constants import STANDARD_GRAVITY_W
 from contact_dynamics.errors import BusyError, InvalidFieldError, TookTooLongError, TooLargeError
 from contact_dynamics.questions import (
@@ -34,9 +35,7 @@ from contact_dynamics.questions import (
 from contact_dynamics.questions.effort import MAX_QUICK_FITTED, excerpt
 from contact_dynamics.questions.services import Answer, Question, service_of
 from contact_dynamics.questions.workers import WorkerFault, WorkerLimits, Workers
-from contact_dynamics.rigid_body.body import BodyState, MassProperties
 from contact_dynamics.shapes.convex import box
-from contact_dynamics.world import Body, Surface, World
 
 PATIENCE_S = 60.0  # for a busy machine, on which a worker takes long to start
 FOR_EVER = 10**10  # powers of three that no worker computes in this time

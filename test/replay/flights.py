@@ -13,10 +13,9 @@ from rosbags.rosbag2 import CompressionFormat, CompressionMode, StoragePlugin
 from rosbags.rosbag2 import Writer as RosbagsWriter
 from rosbags.typesys import Stores, get_typestore
 
-from contact_dynamics import Body, BodyState, MassProperties, Surface, World
+from contact_dynamics import Body, BodyState, MassProperties, Surface, World, free_motion
 from contact_dynamics.questions import Context, ImpactQuestion, ask
 from contact_dynamics.shapes import sphere
-from contact_dynamics.tumbling import free_motion
 from msg_adapters.stamps import stamp_to_msg
 
 START_NS = 1_700_000_000_000_000_000

@@ -13,9 +13,8 @@ from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 
 from contact_dynamics.errors import InvalidFieldError
+from contact_dynamics.rigid_body import BodyState, MassProperties
 from contact_dynamics.rigid_body.body import (
-    BodyState,
-    MassProperties,
     angular_momentum,
     kinetic_energy,
     momentum,

@@ -11,9 +11,8 @@ from collections.abc import Iterator
 import numpy as np
 import pytest
 
-from contact_dynamics.rigid_body.body import BodyState, MassProperties
+from contact_dynamics import BodyState, MassProperties, free_motion
 from contact_dynamics.rigid_body.inertia.axes_of_inertia import _of_bytes, in_doubles
-from contact_dynamics.tumbling import free_motion
 from contact_dynamics.tumbling.flips import next_flips
 from contact_dynamics.tumbling.motion import constants_of
 from contact_dynamics.tumbling.poinsot_construction import poinsot, polhode

@@ -5,10 +5,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from contact_dynamics.contact.contact import ContactSet
-from contact_dynamics.rigid_body.body import BodyState, MassProperties
-from contact_dynamics.tumbling import free_motion
-from contact_dynamics.world import Body, Surface, World, box_vertices
+from contact_dynamics import Body, BodyState, ContactSet, MassProperties, Surface, World, free_motion
+from contact_dynamics.world import box_vertices
 from viewing.drawn import STAMP_NS
 
 BODY = Body(

@@ -6,17 +6,16 @@ from dataclasses import replace
 
 import numpy as np
 
-from contact_dynamics.contact.contact import ContactSet
+from contact_dynamics import Body, BodyState, ContactSet, MassProperties
 from contact_dynamics.diagrams.planar_scene import MAX_SETS, silhouette
 from contact_dynamics.diagrams.shape import convex_shape
-from contact_dynamics.plane.projection import PlaneOfMotion
+from contact_dynamics.plane import PlaneOfMotion
 from contact_dynamics.questions import ContactModeAnswer, ContactModeQuestion, Context, Problem
 from contact_dynamics.questions.contact_modes import answer
-from contact_dynamics.rigid_body.body import BodyState, MassProperties
 from contact_dynamics.viewing.diagrams_in_view import DiagramsInView
 from contact_dynamics.viewing.entities import FORCE_DUAL, MODE_MAP, PLANAR_MODES
 from contact_dynamics.viewing.picture import Picture
-from contact_dynamics.world import Body, box_vertices
+from contact_dynamics.world import box_vertices
 from viewing.drawn import STAMP_NS, Canvas
 from viewing.known import WORLD
 

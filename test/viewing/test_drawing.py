@@ -10,19 +10,16 @@ from typing import Any
 import numpy as np
 import pytest
 
-from contact_dynamics.contact.contact import ContactSet
+from contact_dynamics import Body, BodyState, ContactSet, MassProperties, PlanarWrench, World
 from contact_dynamics.contact_modes import contact_modes, wrench_sets
 from contact_dynamics.contact_modes.letters import mode_in_words
 from contact_dynamics.diagrams.impulse_space import impulse_space, impulse_space_in_3d
 from contact_dynamics.diagrams.mode_map import mode_map
 from contact_dynamics.diagrams.planar_scene import ModesSideBySide
-from contact_dynamics.plane.projection import PlaneOfMotion
-from contact_dynamics.plane.types import PlanarWrench
+from contact_dynamics.plane import PlaneOfMotion
 from contact_dynamics.questions import ImpactAnswer, ImpactQuestion, Problem, ask
-from contact_dynamics.rigid_body.body import BodyState, MassProperties
 from contact_dynamics.viewing.drawing import EYE, TARGET, draw_diagram, draw_side_by_side
 from contact_dynamics.viewing.picture import Picture
-from contact_dynamics.world import Body, World
 from plots.drawn_figures import APPLIED, DIRECTIONS, IN_TRAY, OUTLINE, TRAY
 from viewing.drawn import STAMP_NS, Canvas, Drawn
 

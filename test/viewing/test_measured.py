@@ -10,14 +10,12 @@ import pytest
 import rerun as rr
 from scipy.spatial.transform import Rotation
 
+from contact_dynamics import Body, BodyState, free_motion
 from contact_dynamics.diagrams.after_impact import LATE_S, SPAN_S, AwaitedImpacts
-from contact_dynamics.rigid_body.body import BodyState
-from contact_dynamics.tumbling import free_motion
 from contact_dynamics.validation import FloatArray
 from contact_dynamics.viewing.columns import pose_columns, scalar_columns, strip_columns, strips_2d, strips_3d
 from contact_dynamics.viewing.measured import curves_of, draw_prediction_at, draw_states, style_series
 from contact_dynamics.viewing.picture import Picture
-from contact_dynamics.world import Body
 from diagrams.test_after_impact import STRIKE_NS, prediction
 from diagrams.test_after_impact import flight as struck_flight
 from viewing.drawn import STAMP_NS, Canvas

@@ -6,18 +6,15 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from contact_dynamics import BodyState, ContactSet, World, free_motion
 from contact_dynamics.constants import to_ns
-from contact_dynamics.contact.contact import ContactSet
 from contact_dynamics.diagrams.impact_scene import LABELS
 from contact_dynamics.impact import PathEvent
 from contact_dynamics.questions import ImpactAnswer
-from contact_dynamics.rigid_body.body import BodyState
-from contact_dynamics.tumbling import free_motion
 from contact_dynamics.viewing.entities import ERROR
 from contact_dynamics.viewing.in_view import LABELS_S
 from contact_dynamics.viewing.picture import Picture
 from contact_dynamics.viewing.words import sentence
-from contact_dynamics.world import World
 from viewing.answers import contact_mode_answer, impact_answer, tumbling_answer
 from viewing.drawn import STAMP_NS, Canvas
 from viewing.known import STATE, TRAJECTORY, TWO_CONTACTS, WORLD

@@ -7,19 +7,14 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from contact_dynamics import Body, BodyState, free_motion
 from contact_dynamics.diagrams.poinsot import ellipsoid_net
 from contact_dynamics.questions import TumblingAnswer
-from contact_dynamics.rigid_body.body import BodyState
 from contact_dynamics.rotations.one import rotation_matrix
-from contact_dynamics.tumbling import FreeMotion, free_motion
+from contact_dynamics.tumbling import FreeMotion
 from contact_dynamics.tumbling.poinsot_construction import poinsot, rolling_curves
-from contact_dynamics.viewing.in_view import (
-    count_of_flight,
-    draw_poinsot,
-    draw_rolling,
-)
+from contact_dynamics.viewing.in_view import count_of_flight, draw_poinsot, draw_rolling
 from contact_dynamics.viewing.picture import Picture
-from contact_dynamics.world import Body
 from viewing.answers import tumbling_answer
 from viewing.drawn import Canvas, read_drawn
 from viewing.known import BODY, STATE, WORLD

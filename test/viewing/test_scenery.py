@@ -9,16 +9,15 @@ import rerun as rr
 from hypothesis import given
 from hypothesis import strategies as st
 
+from contact_dynamics import Body, BodyState, Obstacle, Surface, World
 from contact_dynamics.diagrams.shape import convex_shape
 from contact_dynamics.diagrams.world_scene import MAX_GRID_LINES, body_marks, surface_marks
 from contact_dynamics.numerics.vectors import tangents_near_x
-from contact_dynamics.rigid_body.body import BodyState
-from contact_dynamics.shapes.obstacle import Obstacle
 from contact_dynamics.viewing.drawing import parts_of
 from contact_dynamics.viewing.entities import BODIES, SURFACES, entity
 from contact_dynamics.viewing.picture import Picture
 from contact_dynamics.viewing.scenery import Scenery, draw_axes
-from contact_dynamics.world import Body, Surface, World, box_vertices
+from contact_dynamics.world import box_vertices
 from viewing.drawn import STAMP_NS, Canvas
 from viewing.known import BODY, FLOOR
 

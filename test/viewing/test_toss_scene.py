@@ -8,14 +8,13 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from contact_dynamics import BodyState, World
 from contact_dynamics.diagrams.shape import convex_shape
 from contact_dynamics.diagrams.toss_scene import MAX_STRIKING, toss_marks, tree_of
 from contact_dynamics.diagrams.words import toss_in_words
 from contact_dynamics.questions import Context, TossAnswer, TossQuestion, TossSampling, UncertainState, ask
-from contact_dynamics.rigid_body.body import BodyState
 from contact_dynamics.toss import TossEventKind
 from contact_dynamics.viewing.picture import Picture
-from contact_dynamics.world import World
 from diagrams.marks_of import marks_of
 from viewing.drawn import Canvas
 from viewing.known import BODY, WORLD

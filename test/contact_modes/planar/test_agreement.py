@@ -12,18 +12,17 @@ from dataclasses import replace
 
 import pytest
 
-from contact_dynamics.contact_modes import (
-    Certainty,
+from contact_dynamics import (
     ModeVerdict,
+    PlanarBody,
+    PlanarContact,
     PlanarContactProblem,
-    PlanarModeAnswer,
-    contact_modes,
+    PlanarWrench,
     mode_margins,
     statics,
-    wrench_sets,
 )
+from contact_dynamics.contact_modes import Certainty, PlanarModeAnswer, contact_modes, wrench_sets
 from contact_dynamics.errors import UndecidedError
-from contact_dynamics.plane.types import PlanarBody, PlanarContact, PlanarWrench
 
 # Relative to the wrench and what forces it takes: wrenches as near as this to a boundary are on either side.
 NEAR = 1e-7

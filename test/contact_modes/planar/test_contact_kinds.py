@@ -9,14 +9,13 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from contact_dynamics.contact.contact import ContactSet
-from contact_dynamics.contact.curvature import Curvatures
+from contact_dynamics.contact import ContactSet, Curvatures
 from contact_dynamics.contact.found import find_contacts
 from contact_dynamics.contact_modes import PlanarMode, contact_modes, spatial_kinematic_modes
 from contact_dynamics.errors import OutOfPlaneError
-from contact_dynamics.plane.projection import PlaneOfMotion, project_onto_plane
-from contact_dynamics.plane.types import PlanarBody, PlanarContact, PlanarVelocity, PlanarWrench
-from contact_dynamics.rigid_body.body import BodyState, MassProperties
+from contact_dynamics.plane import PlanarBody, PlanarContact, PlanarVelocity, PlanarWrench, PlaneOfMotion
+from contact_dynamics.plane.projection import project_onto_plane
+from contact_dynamics.rigid_body import BodyState, MassProperties
 from contact_dynamics.shapes.convex import cylinder, sphere
 from contact_dynamics.world import Body, Surface, World
 from contact_modes.evidence import planar_problem, spatial_problem

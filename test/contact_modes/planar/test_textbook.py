@@ -25,13 +25,8 @@ from contact_dynamics.contact_modes import (
     statics,
     wrench_sets,
 )
-from contact_dynamics.plane.types import (
-    PlanarBody,
-    PlanarContact,
-    PlanarVelocity,
-    PlanarWrench,
-    friction_cone,
-)
+from contact_dynamics.plane import PlanarBody, PlanarContact, PlanarVelocity, PlanarWrench
+from contact_dynamics.plane.types import friction_cone
 from contact_modes.evidence import planar_problem
 from oracles.contact_mode_cases import contact, resting, rounded
 

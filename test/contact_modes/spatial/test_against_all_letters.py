@@ -8,10 +8,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from contact_dynamics.contact.contact import ContactSet
+from contact_dynamics import BodyState, ContactSet, MassProperties, ModeVerdict
 from contact_dynamics.contact.friction import linearised_cone
-from contact_dynamics.contact_modes import ModeVerdict, contact_modes
-from contact_dynamics.rigid_body.body import BodyState, MassProperties
+from contact_dynamics.contact_modes import contact_modes
 from contact_modes.evidence import spatial_problem
 from oracles.spatial_modes import consistent_combinations
 from sweeps import seeds

@@ -8,13 +8,9 @@ import math
 import numpy as np
 import pytest
 
-from contact_dynamics.contact.contact import ContactSet
-from contact_dynamics.contact_modes import (
-    ModeVerdict,
-    contact_modes,
-)
+from contact_dynamics import BodyState, ContactSet, MassProperties, ModeVerdict
+from contact_dynamics.contact_modes import contact_modes
 from contact_dynamics.errors import TooLargeError
-from contact_dynamics.rigid_body.body import BodyState, MassProperties
 from contact_modes.evidence import check_laws, planar_problem, spatial_problem
 from oracles.contact_mode_cases import FloatCase, draw, rounded
 from sweeps import seeds

@@ -8,14 +8,8 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
-from contact_dynamics.contact.contact import ContactSet
-from contact_dynamics.contact_modes import (
-    ModeVerdict,
-    SpatialContactProblem,
-    SpatialModeAnswer,
-    contact_modes,
-)
-from contact_dynamics.rigid_body.body import BodyState, MassProperties
+from contact_dynamics import BodyState, ContactSet, MassProperties, ModeVerdict, SpatialContactProblem
+from contact_dynamics.contact_modes import SpatialModeAnswer, contact_modes
 from contact_modes.evidence import check_laws, spatial_problem
 from oracles.equilibria_in_space import resting
 from sweeps import seeds

@@ -15,10 +15,9 @@ import math
 import numpy as np
 import pytest
 
-from contact_dynamics.contact.contact import ContactSet
+from contact_dynamics import BodyState, ContactSet
 from contact_dynamics.contact_modes import spatial_kinematic_modes
 from contact_dynamics.contact_modes.spatial.kinematic import cone_faces
-from contact_dynamics.rigid_body.body import BodyState
 
 X, Y, Z = np.eye(3)
 WALLS = [(Z, X, Y), (Y, Z, X), (X, Y, Z), (-X, Z, Y), (-Y, X, Z), (-Z, Y, X)]

@@ -6,9 +6,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from contact_dynamics.contact.contact import ContactSet
+from contact_dynamics import BodyState, ContactSet, MassProperties
 from contact_dynamics.contact_modes import SpatialModeAnswer, contact_modes
-from contact_dynamics.rigid_body.body import BodyState, MassProperties
 from contact_modes.evidence import spatial_problem
 from sweeps import seeds
 

@@ -11,11 +11,10 @@ import numpy as np
 import pytest
 from scipy.optimize import linprog
 
-from contact_dynamics.contact.contact import ContactSet
-from contact_dynamics.contact.curvature import Curvatures
+from contact_dynamics.contact import ContactSet, Curvatures
 from contact_dynamics.contact_modes import spatial_kinematic_modes
 from contact_dynamics.errors import TooLargeError
-from contact_dynamics.rigid_body.body import BodyState
+from contact_dynamics.rigid_body import BodyState
 from sweeps import seeds
 
 POSITIVE = 1e-7  # slack, of accelerations up to 1, above which a linear program counts a string as possible

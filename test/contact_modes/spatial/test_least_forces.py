@@ -7,8 +7,7 @@ import numpy as np
 import pytest
 
 from contact_dynamics import BodyState, ContactSet, MassProperties
-from contact_dynamics.contact_modes import contact_modes
-from contact_dynamics.contact_modes.result import SpatialModeAnswer
+from contact_dynamics.contact_modes import SpatialModeAnswer, contact_modes
 from contact_modes.evidence import spatial_problem
 from sweeps import seeds
 

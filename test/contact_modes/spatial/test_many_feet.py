@@ -8,9 +8,8 @@ import math
 import numpy as np
 import pytest
 
-from contact_dynamics.contact.contact import ContactSet
-from contact_dynamics.contact_modes import ModeVerdict, SpatialContactProblem, contact_modes
-from contact_dynamics.rigid_body.body import BodyState, MassProperties
+from contact_dynamics import BodyState, ContactSet, MassProperties, ModeVerdict, SpatialContactProblem
+from contact_dynamics.contact_modes import contact_modes
 from contact_modes.evidence import spatial_problem
 from sweeps import seeds
 

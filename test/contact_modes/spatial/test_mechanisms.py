@@ -9,15 +9,9 @@ from typing import Any
 import numpy as np
 import pytest
 
-from contact_dynamics.contact import ContactSet
-from contact_dynamics.contact_modes import (
-    ModeVerdict,
-    ResponseContactProblem,
-    SpatialContactProblem,
-    contact_modes,
-)
+from contact_dynamics import BodyState, ContactSet, MassProperties, ModeVerdict, SpatialContactProblem
+from contact_dynamics.contact_modes import ResponseContactProblem, contact_modes
 from contact_dynamics.errors import InvalidFieldError
-from contact_dynamics.rigid_body.body import BodyState, MassProperties
 from oracles.modes_of_planar_mechanism import Mechanism, all_modes, drawn
 from oracles.modes_on_planes import INERTIA, MASS, Made, made
 from sweeps import seeds

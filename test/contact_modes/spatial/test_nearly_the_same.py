@@ -8,18 +8,17 @@ import contextlib
 import numpy as np
 import pytest
 
-from contact_dynamics.contact.contact import ContactSet
-from contact_dynamics.contact_modes import (
-    Certainty,
+from contact_dynamics import (
+    BodyState,
+    ContactSet,
+    MassProperties,
     ModeVerdict,
     SpatialContactProblem,
-    contact_modes,
     mode_margins,
     statics,
-    wrench_sets,
 )
+from contact_dynamics.contact_modes import Certainty, contact_modes, wrench_sets
 from contact_dynamics.errors import TooLargeError, UndecidedError
-from contact_dynamics.rigid_body.body import BodyState, MassProperties
 from contact_modes.evidence import spatial_problem
 from oracles.equilibria_in_space import KINDS, Resting, resting, rough
 from sweeps import seeds

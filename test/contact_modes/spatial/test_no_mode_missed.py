@@ -10,14 +10,8 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from contact_dynamics.contact.contact import ContactSet
-from contact_dynamics.contact_modes import (
-    ModeVerdict,
-    SpatialContactProblem,
-    SpatialModeAnswer,
-    contact_modes,
-)
-from contact_dynamics.rigid_body.body import BodyState, MassProperties
+from contact_dynamics import BodyState, ContactSet, MassProperties, ModeVerdict, SpatialContactProblem
+from contact_dynamics.contact_modes import SpatialModeAnswer, contact_modes
 from contact_modes.evidence import spatial_problem
 from oracles.modes_on_planes import INERTIA, MASS, Made, made, worst_violation
 from sweeps import seeds

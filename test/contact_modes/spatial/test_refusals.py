@@ -8,7 +8,7 @@ import math
 import numpy as np
 import pytest
 
-from contact_dynamics.contact.contact import ContactSet
+from contact_dynamics import BodyState, ContactSet, MassProperties
 from contact_dynamics.contact_modes import (
     Refusal,
     RefusedMode,
@@ -16,7 +16,6 @@ from contact_dynamics.contact_modes import (
     refused_modes,
     spatial_kinematic_modes,
 )
-from contact_dynamics.rigid_body.body import BodyState, MassProperties
 from contact_modes.evidence import spatial_problem
 from sweeps import seeds
 

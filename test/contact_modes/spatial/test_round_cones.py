@@ -8,9 +8,8 @@ import math
 import numpy as np
 import pytest
 
-from contact_dynamics.contact.contact import ContactSet
-from contact_dynamics.contact_modes import Certainty, contact_modes, statics
-from contact_dynamics.rigid_body.body import BodyState, MassProperties
+from contact_dynamics import BodyState, ContactSet, MassProperties, statics
+from contact_dynamics.contact_modes import Certainty, contact_modes
 from contact_modes.evidence import spatial_problem
 from oracles.modes_of_two_bodies import Bodies, all_modes
 from sweeps import seeds

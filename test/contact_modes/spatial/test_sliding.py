@@ -10,11 +10,10 @@ import numpy as np
 import pytest
 from scipy.optimize import linprog
 
-from contact_dynamics.contact.contact import ContactSet
+from contact_dynamics import BodyState, ContactSet
 from contact_dynamics.contact_modes import spatial_kinematic_modes, spatial_sliding_modes
 from contact_dynamics.errors import TooLargeError
 from contact_dynamics.numerics.vectors import tangents_towards
-from contact_dynamics.rigid_body.body import BodyState
 from sweeps import seeds
 
 X, Y, Z = np.eye(3)

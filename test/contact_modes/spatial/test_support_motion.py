@@ -21,16 +21,14 @@ from contact_dynamics import (
     SpatialContactProblem,
     Surface,
     World,
-    contact_modes,
-)
-from contact_dynamics.contact_modes import (
-    LargestLoad,
     closure,
+    contact_modes,
     largest_acceleration,
     largest_spin,
     largest_tilt,
     least_friction,
 )
+from contact_dynamics.contact_modes import LargestLoad
 from contact_dynamics.errors import InvalidFieldError, NotSupportedError
 from contact_modes.evidence import pyramid_wrenches, spatial_problem
 from sweeps import seeds

@@ -11,16 +11,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.optimize import nnls
 
-from contact_dynamics.contact.contact import ContactSet
-from contact_dynamics.contact_modes import (
-    SpatialContactProblem,
-    SpatialWrenchSet,
-    contact_modes,
-    mode_margins,
-    wrench_sets,
-)
+from contact_dynamics import BodyState, ContactSet, MassProperties, SpatialContactProblem, mode_margins
+from contact_dynamics.contact_modes import SpatialWrenchSet, contact_modes, wrench_sets
 from contact_dynamics.errors import InvalidFieldError, TooLargeError
-from contact_dynamics.rigid_body.body import BodyState, MassProperties
 from contact_modes.evidence import spatial_problem
 from sweeps import seeds
 

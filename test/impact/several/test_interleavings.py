@@ -6,13 +6,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from contact_dynamics import BodyState, ContactSet, MassProperties
-from contact_dynamics.impact import (
-    RestitutionLaw,
-    outcomes_over_interleavings,
-    outcomes_over_orders,
-    spatial_impact,
-)
+from contact_dynamics import BodyState, ContactSet, MassProperties, RestitutionLaw, spatial_impact
+from contact_dynamics.impact import outcomes_over_interleavings, outcomes_over_orders
 from contact_dynamics.rigid_body.body import inverse_mass_matrix, kinetic_energy
 from oracles import impact_interleaved
 from sweeps import seeds

@@ -11,7 +11,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from contact_dynamics.contact.contact import ContactSet
+from contact_dynamics.contact import ContactSet
 from contact_dynamics.errors import InvalidFieldError, SeparatingContactError
 from contact_dynamics.impact import (
     RestitutionLaw,
@@ -22,13 +22,8 @@ from contact_dynamics.impact import (
     spatial_impact,
 )
 from contact_dynamics.impact.several import simultaneous
-from contact_dynamics.rigid_body.body import (
-    BodyState,
-    MassProperties,
-    angular_momentum,
-    kinetic_energy,
-    momentum,
-)
+from contact_dynamics.rigid_body import BodyState, MassProperties
+from contact_dynamics.rigid_body.body import angular_momentum, kinetic_energy, momentum
 from oracles import impact_in_turn
 from sweeps import seeds
 

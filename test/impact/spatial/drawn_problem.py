@@ -5,9 +5,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from contact_dynamics.contact.contact import Contact
-from contact_dynamics.impact import RestitutionLaw, SpatialImpact, spatial_impact
-from contact_dynamics.rigid_body.body import BodyState, MassProperties
+from contact_dynamics import BodyState, Contact, MassProperties, RestitutionLaw, spatial_impact
+from contact_dynamics.impact import SpatialImpact
 
 UP = np.array([0.0, 0.0, 1.0])
 IDENTITY = np.array([0.0, 0.0, 0.0, 1.0])

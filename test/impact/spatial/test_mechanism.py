@@ -14,19 +14,16 @@ from hypothesis import example, given
 from hypothesis import strategies as st
 from scipy.integrate import solve_ivp
 
-from contact_dynamics import Contact, response_impact
-from contact_dynamics.errors import InvalidFieldError, SeparatingContactError
-from contact_dynamics.impact import (
-    ImpactOutcome,
-    PathEvent,
-    ResponseImpact,
+from contact_dynamics import (
+    BodyState,
+    Contact,
     RestitutionLaw,
-    SpatialImpact,
-    response_impacts,
+    response_impact,
     spatial_impact,
     spatial_pair_impact,
 )
-from contact_dynamics.rigid_body.body import BodyState
+from contact_dynamics.errors import InvalidFieldError, SeparatingContactError
+from contact_dynamics.impact import ImpactOutcome, PathEvent, ResponseImpact, SpatialImpact, response_impacts
 from impact.spatial.drawn_problem import random_body, random_problem, solve
 from sweeps import seeds
 

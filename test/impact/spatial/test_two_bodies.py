@@ -10,16 +10,11 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from contact_dynamics.contact.contact import Contact
+from contact_dynamics.contact import Contact
 from contact_dynamics.errors import SeparatingContactError
 from contact_dynamics.impact import RestitutionLaw, spatial_impact, spatial_pair_impact
-from contact_dynamics.rigid_body.body import (
-    BodyState,
-    MassProperties,
-    angular_momentum,
-    kinetic_energy,
-    momentum,
-)
+from contact_dynamics.rigid_body import BodyState, MassProperties
+from contact_dynamics.rigid_body.body import angular_momentum, kinetic_energy, momentum
 
 IDENTITY = np.array([0.0, 0.0, 0.0, 1.0])
 

@@ -12,8 +12,7 @@ from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 
 from contact_dynamics.errors import InvalidFieldError, TooLargeError
-from contact_dynamics.rigid_body import inertia
-from contact_dynamics.rigid_body.body import MassProperties
+from contact_dynamics.rigid_body import MassProperties, inertia
 from contact_dynamics.rigid_body.inertia import MassDistribution
 from contact_dynamics.shapes.convex import sphere
 from contact_dynamics.world import MAX_VERTICES, Body, box_vertices
