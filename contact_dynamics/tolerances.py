@@ -286,6 +286,10 @@ VELOCITY_TOLERANCE: Final = 1e-9
 the rounding of velocities of up to 1e4 m/s, and far below what any sensor resolves. Measured states need
 their noise level instead."""
 
+STATES_APART: Final = 1e-4
+"""s. States of two bodies whose stamps differ by more are not of one time. Within it, a free fall changes
+velocities by 1 mm/s, less than the noise of measured ones."""
+
 DISTANCE_TOLERANCE: Final = 1e-6
 """m. A point within it of a surface touches, if the caller gives no other tolerance."""
 

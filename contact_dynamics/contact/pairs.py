@@ -9,8 +9,10 @@ from typing import TYPE_CHECKING, TypeAlias
 
 import numpy as np
 
+from contact_dynamics.constants import seconds_between
 from contact_dynamics.errors import InvalidFieldError
 from contact_dynamics.numerics.vectors import point_jacobians
+from contact_dynamics.tolerances import STATES_APART
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -21,6 +23,28 @@ if TYPE_CHECKING:
 
 Pairs: TypeAlias = "Sequence[tuple[int, int | None]]"
 """For each contact, the body into which its normal points, and the other body, or None for the world."""
+
+
+def seconds_apart(states: Sequence[BodyState]) -> float:
+    """Return the largest difference between the stamps of states, s. A stamp of 0 means none."""
+    stamps = [state.stamp_ns for state in states if state.stamp_ns]
+    return seconds_between(min(stamps), max(stamps)) if stamps else 0.0
+
+
+def check_one_time(states: Sequence[BodyState], field: str) -> None:
+    """Reject states of several bodies whose stamps differ by more than `STATES_APART`.
+
+    Raises:
+        InvalidFieldError: they do.
+    """
+    apart = seconds_apart(states)
+    if apart > STATES_APART:
+        raise InvalidFieldError(
+            field,
+            f"stamps that differ by {apart:.6g} s",
+            "of the same time as the other",
+            "free_motion(body, state).state_at(seconds) is the state at another time",
+        )
 
 
 def check_pairs(bodies: int, states: Sequence[object], contacts: ContactSet, pairs: Pairs) -> None:

@@ -23,6 +23,7 @@ import numpy as np
 from contact_dynamics.constants import HORIZON, STANDARD_GRAVITY_W
 from contact_dynamics.contact.contact import ContactSet
 from contact_dynamics.contact.found import check_has_shape
+from contact_dynamics.contact.pairs import check_one_time
 from contact_dynamics.contact.touches import site_of, touches_of
 from contact_dynamics.errors import InvalidFieldError, NotSupportedError
 from contact_dynamics.landing.acceleration_bounds import all_free_for, bounds_of
@@ -99,10 +100,11 @@ def next_meeting(
     Raises:
         NoShapeError: a body has no shape.
         NotSupportedError: a shape has circular rims, or the bodies stay close to each other for too long.
-        InvalidFieldError: a number is out of range, or the bodies penetrate each other by more than the
-            tolerance.
+        InvalidFieldError: a number is out of range, the stamps of the states differ, or the bodies penetrate
+            each other by more than the tolerance.
         TooLargeError: the search takes too many steps, because a body spins too fast for the horizon.
     """
+    check_one_time((state, other_state), "other_state")
     gravity = check_vector3("gravity_W", gravity_W)
     others = gravity if other_gravity_W is None else check_vector3("other_gravity_W", other_gravity_W)
     friction = check_not_negative("friction", friction)

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from contact_dynamics.contact.contact import ContactSet
-from contact_dynamics.contact.pairs import check_pairs
+from contact_dynamics.contact.pairs import check_pairs, seconds_apart
 from contact_dynamics.contact_modes import BodiesContactProblem, BodiesMode, ModeVerdict, contact_modes
 from contact_dynamics.contact_modes.planar.problem import MAX_PLANAR_CONTACTS
 from contact_dynamics.contact_modes.spatial.response import for_each
@@ -20,7 +20,7 @@ from contact_dynamics.questions.extent import check_contacts, check_extent, chec
 from contact_dynamics.questions.services import Answer, Question
 from contact_dynamics.questions.subject import NEWEST, NamedState, StateSource, subject_of
 from contact_dynamics.questions.touching import outside_shape
-from contact_dynamics.tolerances import FLUSH
+from contact_dynamics.tolerances import FLUSH, STATES_APART
 from contact_dynamics.validation import FloatArray, check_array
 from contact_dynamics.world import Body
 
@@ -33,6 +33,8 @@ if TYPE_CHECKING:
 
 MAX_BODIES: Final = 32
 """Most bodies in one question: as many as contacts may touch (`MAX_DYNAMIC_CONTACTS`)."""
+
+_APART: Final = "the states differ in time by {:.3g} ms, which matters if the bodies move"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
@@ -118,8 +120,8 @@ class BodiesContactModeAnswer(Answer):
         undecided: The undecided cases and the reason. Empty unless the verdict is UNDECIDED.
         undecided_modes: Modes for which it is undecided whether they are consistent.
         velocity_tolerance: m/s, tolerance that was used.
-        warnings: Texts about limited validity: a contact outside a body's shape, or contacts treated as flush
-            because the verdict would otherwise be undecided.
+        warnings: Texts about limited validity: a contact outside a body's shape, contacts treated as flush
+            because the verdict would otherwise be undecided, or states of different times.
     """
 
     bodies: tuple[NamedState, ...]
@@ -182,6 +184,7 @@ def answer(question: BodiesContactModeQuestion, context: Context | None = None) 
             velocity_tolerance=or_default(question.velocity_tolerance, known.defaults.velocity_tolerance),
         )
     )
+    apart = seconds_apart([subject.state for subject in subjects])
     return BodiesContactModeAnswer(
         bodies=tuple(
             NamedState(name=subject.body.name, p_FB_F=subject.body.p_FB_F, state=subject.state)
@@ -196,6 +199,7 @@ def answer(question: BodiesContactModeQuestion, context: Context | None = None) 
         undecided_modes=found.undecided_modes,
         velocity_tolerance=found.velocity_tolerance,
         warnings=(
+            *([_APART.format(1e3 * apart)] if apart > STATES_APART else []),
             *([TAKEN_AS_FLUSH] if found.flush_within > FLUSH else []),
             *(text for i, subject in enumerate(subjects) for text in _outside(question, i, subject, known)),
         ),

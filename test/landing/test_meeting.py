@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -146,6 +147,24 @@ def test_balls_that_graze_each_other_meet_in_a_contact_or_not_at_all(depth: floa
             assert len(meeting.contacts) == len(meeting.velocities_W) == 1
             apart = np.linalg.norm(meeting.state.p_WB_W - meeting.other_state.p_WB_W)
             assert apart == pytest.approx(0.3, abs=2e-9)
+
+
+def test_states_of_different_times_are_an_error() -> None:
+    """A stamp of 0 is none. Two trackers are seldom within 0.1 ms of each other."""
+    one, other = at([0, 0, 0], [1, 0, 0]), at([0.3, 0, 0], [0, 0, 0])
+    one, late = replace(one, stamp_ns=10**18), replace(other, stamp_ns=10**18 + 8 * 10**6)
+    near = cd.ContactSet(p_WC_W=[[0.1, 0, 0]], normals_W=[-1, 0, 0], frictions=0.1, restitutions=0.5)
+    for call in (
+        lambda there: cd.next_meeting(SMALL, one, LARGE, there, **PAIR),
+        lambda there: spatial_pair_impact(SMALL, one, LARGE, there, near[0]),
+        lambda there: bodies_impact([SMALL, LARGE], [one, there], near, [(0, 1)]),
+    ):
+        with pytest.raises(
+            InvalidFieldError, match=r"state.* must be of the same time .*, got .* by 0\.008 s"
+        ):
+            call(late)
+        call(other)
+        call(replace(late, stamp_ns=10**18 + 10**4))
 
 
 def test_what_cannot_meet_is_refused_by_name() -> None:

@@ -7,6 +7,7 @@ That the modes are right is shown in `contact_modes/spatial/test_several_bodies.
 from __future__ import annotations
 
 import re
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -222,3 +223,10 @@ def test_the_surface_of_a_body_has_no_motion_of_its_own() -> None:
     request.contacts.surface_velocities = [0.0] * 23 + [0.1]
     with pytest.raises(InvalidFieldError, match=r"^contacts.surface_velocities\[7\] must be zero between"):
         question_of(request)
+
+
+def test_states_of_different_times_are_a_warning() -> None:
+    later = replace(STATES[1], stamp_ns=10**9 + 8_000_000)
+    found = ask(replace(PUSHED, states=(STATES[0], later)), Context(world=WORLD))
+    assert found.warnings == ("the states differ in time by 8 ms, which matters if the bodies move",)
+    assert not ask(PUSHED, Context(world=WORLD)).warnings

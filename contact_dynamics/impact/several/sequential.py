@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 
 import numpy as np
 
-from contact_dynamics.contact.pairs import check_pairs
+from contact_dynamics.contact.pairs import check_one_time, check_pairs
 from contact_dynamics.errors import NORMAL_HINT, InvalidFieldError, SeparatingContactError
 from contact_dynamics.impact.energy import created
 from contact_dynamics.impact.law import RestitutionLaw
@@ -77,11 +77,12 @@ def bodies_impact(
     Raises:
         SeparatingContactError: all contacts separate.
         InvalidFieldError: there are no contacts, lists differ in length, an index is out of range, the
-            tolerance is not > 0, or ENERGETIC and SIMULTANEOUS are combined.
+            tolerance is not > 0, the stamps of the states differ, or ENERGETIC and SIMULTANEOUS are combined.
     """
     masses = [each.mass_properties for each in bodies]
     tolerance = check_positive("velocity_tolerance", velocity_tolerance)
     check_pairs(len(masses), states, contacts, pairs)
+    check_one_time(states, "states")
     touching = Touching(masses, contacts, pairs, restitution_law, tolerance)
     before = check_touching(touching, states)
     if several_contacts_law == SeveralContactsLaw.SEQUENTIAL:

@@ -22,6 +22,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from contact_dynamics.contact.pairs import check_one_time
 from contact_dynamics.contact.velocities import warn_if_far
 from contact_dynamics.errors import InvalidFieldError
 from contact_dynamics.impact.law import RestitutionLaw
@@ -123,8 +124,9 @@ def spatial_pair_impact(
         SeparatingContactError: the contact's relative normal velocity is above the tolerance.
         InvalidFieldError: the tolerance is negative; or a velocity, a mass, a moment of inertia or the
             distance of the contact from a centre of mass exceeds `LARGEST_NUMBER`, or a mass or moment of
-            inertia is below its inverse.
+            inertia is below its inverse; or the stamps of the states differ.
     """
+    check_one_time((state, other_state), "other_state")
     warn_if_far(body, state, contact.p_WC_W)
     warn_if_far(other, other_state, contact.p_WC_W)
     body = body.mass_properties
