@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A body and the world's flats in plain floats, as a whole toss needs them, and the points that touch.
+"""A body and the planes of the world in plain floats, and the contacts between them.
 
 `solid.pxd` gives the C types with which this file compiles.
 
-A *touch* is a corner of the body and a flat. If the shape is rounded, a ball rolls over the corner, and the
-point that touches is below the ball's centre. The arm from the centre of mass to that point is R c - r n,
-with the corner c, the radius r and the flat's normal n. It changes with w x R c alone, so the point's
-acceleration is a + alpha x arm + w x (w x R c).
+A *touch* is a corner of the body and a plane, here called a flat. If the shape is rounded, the corner is the
+centre of a ball, and the contact point is below it. The arm from the centre of mass to that point is
+R c - r n, with the corner c, the radius r and the normal n. Its rate of change is w x R c, so the
+acceleration of the contact point is a + alpha x arm + w x (w x R c).
 """
 
 from __future__ import annotations
@@ -53,9 +53,9 @@ class Flat:
         normal: Unit, into the free side, world axes.
         tangents: Two unit tangents, orthogonal to each other.
         level: m, the height of the flat along its normal.
-        friction: Coulomb's mu where contact lasts.
-        restitution: The coefficient e.
-        strike_friction: Coulomb's mu in a strike.
+        friction: Coefficient of friction mu of sustained contact.
+        restitution: Coefficient of restitution e.
+        strike_friction: Coefficient of friction mu in strikes.
     """
 
     def __init__(  # noqa: PLR0917
@@ -91,14 +91,14 @@ class Solid:
         inertia: (3, 3) row by row, kg m^2, body axes.
         inverse: Its inverse.
         points: m, the corners, three numbers each, body axes.
-        indices: Those of the corners among the vertices of the body's shape.
-        rounding: m, the radius of the ball that rolls over the corners.
+        indices: Indices of the corners among the vertices of the body's shape.
+        rounding: m, radius of the balls at the corners.
         reach: m, the distance of the farthest point of the body from its centre of mass.
         gravity: m/s^2, world axes.
         flats: The world's surfaces.
-        settling: m, the height of rebounds that are not followed.
-        above: Where the heights of its corners are computed.
-        properties: What `properties_of` has made.
+        settling: m, largest height of rebounds that are not simulated.
+        above: Buffer for the heights of its corners.
+        properties: Cached result of `properties_of`.
     """
 
     def __init__(  # noqa: PLR0917
@@ -137,10 +137,10 @@ class Solid:
         return own
 
     def take(self, rows: Any, i: int) -> None:
-        """Become the body of row ``i``, whose flats have the row's materials.
+        """Take the parameters of the body and the flats from row ``i``.
 
-        Rows, (n, 18 + 3 c + 3 s), have the inertia and its inverse, c corners, and of each of s flats the
-        friction where contact lasts, the restitution and the friction of strikes.
+        Rows, (n, 18 + 3 c + 3 s), contain the inertia and its inverse, c corners, and for each of s flats the
+        friction of sustained contact, the restitution, and the friction in strikes.
         """
         self.inertia, self.inverse = matrix_in(rows, i, 0), matrix_in(rows, i, 9)
         self.properties, self.reach, k = None, 0.0, 18 + 3 * self.count
@@ -169,14 +169,14 @@ class Solid:
 
 
 class Held:
-    """A contact that stays.
+    """A closed contact.
 
     Attributes:
         touch: The corner and the flat.
-        slides: Whether it slides. If it does not, it sticks, or it rolls if it is rounded.
+        slides: True if it slides. Otherwise it sticks, or rolls if it is rounded.
         towards: Unit, world axes, the direction in which sliding begins, or zero if the contact sticks.
-        begins: Whether it has just begun to slide, so that friction is against ``towards``. The velocity has
-            no sure direction yet, and friction against it would turn in no time.
+        begins: True if it has just begun to slide, so that friction acts against ``towards``. The direction
+            of its velocity is still rounding error.
     """
 
     def __init__(
@@ -200,7 +200,7 @@ class Held:
 
 
 class Pose:
-    """What follows from 13 numbers alone, whose quaternion need not be unit.
+    """The quantities that follow from the 13 numbers of a state, whose quaternion need not be unit.
 
     Attributes:
         solid: The body.
@@ -219,7 +219,7 @@ class Pose:
         self.inverse: Matrix3 = self.rows
 
     def take(self, y: Numbers) -> None:
-        """Take 13 numbers."""
+        """Set the state from 13 numbers."""
         solid = self.solid
         self.position, self.v, self.w = (y[0], y[1], y[2]), (y[7], y[8], y[9]), (y[10], y[11], y[12])
         self.rows = rows_of(y[3], y[4], y[5], y[6])
@@ -249,7 +249,7 @@ class Pose:
         self.alpha = vec.times(self.rows, vec.times(solid.inverse, torque_B))
 
     def arm(self, flat: int, corner: int) -> Vector3:
-        """Return the arm, m, from the centre of mass to the point that touches or would touch, world axes."""
+        """Return the arm, m, from the centre of mass to the contact point, world axes."""
         solid = self.solid
         x, y, z = vec.times(self.rows, solid.corner(corner))
         touched = solid.flats[flat]
@@ -258,12 +258,12 @@ class Pose:
         return (x - r * a, y - r * b, z - r * c)
 
     def velocity(self, arm: Vector3) -> Vector3:
-        """Return the velocity, m/s, world axes, of the body's point at an arm."""
+        """Return the velocity, m/s, world axes, of the body at an arm."""
         turning = vec.cross(self.w, arm)
         return (self.v[0] + turning[0], self.v[1] + turning[1], self.v[2] + turning[2])
 
     def sliding(self, arm: Vector3, normal: Vector3, towards: Vector3) -> Vector3:
-        """Return the unit direction in which the contact at an arm slides, or begins to."""
+        """Return the unit direction in which the contact at an arm slides, or begins to slide."""
         velocity = self.velocity(arm)
         v_n = vec.dot(velocity, normal)
         e = SLIDING_DIRECTION_SPEED
@@ -276,9 +276,9 @@ class Pose:
         return (x / size, y / size, z / size)
 
     def acceleration(self, flat: int, arm: Vector3, a: Vector3, alpha: Vector3) -> Vector3:
-        """Return the acceleration, m/s^2, of the body's point at an arm; a ball's point rolls meanwhile.
+        """Return the acceleration, m/s^2, of the contact point at an arm, which rolls if it is rounded.
 
-        The mass centre has the acceleration ``a``, m/s^2, and the body ``alpha``, rad/s^2.
+        The acceleration of the centre of mass is ``a``, m/s^2, and that of the body ``alpha``, rad/s^2.
         """
         touched = self.solid.flats[flat]
         n_x, n_y, n_z = touched.normal
@@ -297,7 +297,7 @@ class Pose:
         )
 
     def height(self, flat: int, corner: int) -> float:
-        """Return the height, m, of a corner above a flat, of its ball's lowest point if it is rounded."""
+        """Return the height, m, of a corner above a flat, or of the lowest point of its ball."""
         touched = self.solid.flats[flat]
         n, arm = touched.normal, self.arm(flat, corner)
         return vec.dot(self.position, n) + vec.dot(arm, n) - touched.level
@@ -322,16 +322,16 @@ def solid_of(
 
     Args:
         body: The body.
-        world: Flats, and gravity.
-        indices: (k,), those by which the body's corners are known. Without any, they count from 0.
-        settling: m. Rebounds that are lower are not followed.
-        lasting_factors: (s,), the friction of each surface where contact lasts, relative to that of its
-            strikes. Without any, those of the surfaces hold.
+        world: Planes and gravity.
+        indices: (k,), indices of the corners in results. If None, they count from 0.
+        settling: m, largest height of rebounds that are not simulated.
+        lasting_factors: (s,), friction of sustained contact with each surface, relative to that in strikes.
+            If None or empty, the factors of the surfaces are used.
 
     Raises:
         NoContactError: the body has no shape that could touch anything.
         NotSupportedError: the shape has rims, or a surface is an obstacle.
-        InvalidFieldError: there are not as many factors as surfaces.
+        InvalidFieldError: the number of factors differs from the number of surfaces.
     """
     check_has_shape(body)
     if body.shape.rims:
@@ -370,10 +370,10 @@ def solid_of(
 
 
 def factors_of(lasting_factors: FloatArray | None, surfaces: Sequence[Surface]) -> FloatArray:
-    """Return the factors of all surfaces, (s,). They are those of the surfaces if none is given.
+    """Return the factors of all surfaces, (s,), by default those of the surfaces themselves.
 
     Raises:
-        InvalidFieldError: there are not as many factors as surfaces.
+        InvalidFieldError: the number of factors differs from the number of surfaces.
     """
     if lasting_factors is None or len(lasting_factors) == 0:
         return np.array([surface.lasting_factor for surface in surfaces])
@@ -444,7 +444,7 @@ def heights_and_rates(solid: Solid, y: Numbers) -> list[tuple[float, float, Touc
 
 
 def low_corners(solid: Solid, y: Numbers, high: float, leaving: float) -> list[tuple[float, Touch]]:
-    """Return corners that are at most so high above flats, m, and do not leave faster, m/s, with heights."""
+    """Return heights and touches of corners at most ``high``, m, that rise at most at ``leaving``, m/s."""
     above = solid.above
     for k in range(13):
         above.y[k] = y[k]
@@ -472,10 +472,10 @@ class Above:
     """The heights of all corners above all flats, flat after flat, and their rates.
 
     Attributes:
-        count: How many there are.
+        count: Number of heights.
         heights: m.
         rates: m/s.
-        least: m, the least height.
+        least: m, smallest height.
     """
 
     def __init__(self, count: int) -> None:
@@ -486,7 +486,7 @@ class Above:
         self.y = [0.0] * 13
 
     def take(self, solid: Solid, y: Numbers) -> None:
-        """Take 13 numbers, whose quaternion need not be unit."""
+        """Compute heights and rates from 13 numbers, whose quaternion need not be unit."""
         a, b, c, d, e, f, g, h, i = rows_of(y[3], y[4], y[5], y[6])
         w_x, w_y, w_z = y[10], y[11], y[12]
         k, least = 0, math.inf
@@ -509,7 +509,7 @@ class Above:
 
 
 def energy_of(solid: Solid, y: Numbers) -> float:
-    """Return the kinetic energy and that in uniform gravity together, J. It is zero at rest at the origin."""
+    """Return the sum of kinetic and potential energy, J, which is zero at rest at the origin."""
     return kinetic_energy_of(solid, y) - solid.mass * vec.dot(solid.gravity, (y[0], y[1], y[2]))
 
 
@@ -519,14 +519,14 @@ def kinetic_energy_of(solid: Solid, y: Numbers) -> float:
 
 
 def properties_of(solid: Solid) -> MassProperties:
-    """Return mass and inertia as questions take them."""
+    """Return mass and inertia as `MassProperties`."""
     if solid.properties is None:
         solid.properties = MassProperties(mass=solid.mass, I_B=np.array(solid.inertia).reshape(3, 3))
     return solid.properties
 
 
 def state_of(y: Numbers, stamp_ns: int = 0) -> BodyState:
-    """Return 13 numbers, whose quaternion is nearly unit, as a state."""
+    """Return 13 numbers, whose quaternion is nearly unit, as a `BodyState`."""
     numbers = np.array(y)
     q = numbers[3:7].copy()
     q /= math.sqrt(float(q @ q))
@@ -534,14 +534,14 @@ def state_of(y: Numbers, stamp_ns: int = 0) -> BodyState:
 
 
 def points_of(solid: Solid, y: Numbers, touching: list[Touch]) -> list[Vector3]:
-    """Return where contacts are, m, world."""
+    """Return the contact points, m, world."""
     pose = pose_of(solid, y)
     p_x, p_y, p_z = pose.position
     return [(p_x + x, p_y + y, p_z + z) for x, y, z in [pose.arm(*touch) for touch in touching]]
 
 
 def contacts_of(solid: Solid, y: Numbers, touching: list[Touch]) -> ContactSet:
-    """Return touching contacts as questions take them."""
+    """Return touching contacts as a `ContactSet`."""
     flats = [solid.flats[touch[0]] for touch in touching]
     return ContactSet(
         p_WC_W=np.array(points_of(solid, y, touching)),
