@@ -199,19 +199,14 @@ class Calibration(Record):
 
         return float(chi2.ppf(probability, int(np.sum(self.covariance.diagonal() > 0.0))))
 
-    def distance(self, truth: FloatArray) -> float:
-        """Return the squared distance of other values, (f,), from the estimates, by the covariance."""
-        return _distance(np.array([each.value for each in self.estimates]) - truth, self.covariance)
+    def distance(self, truth: FloatArray, *, by_paths: bool = False) -> float:
+        """Return the squared distance of other values, (f,), from the estimates, by the covariance.
 
-    def by_paths_distance(self, truth: FloatArray) -> float:
-        """Return the same for the estimates of the second way; infinite if only the first was asked for."""
-        if self.by_paths_covariance is None:
+        With ``by_paths``, the estimates are those of the second way; it is infinite if there are none.
+        """
+        covariance = self.by_paths_covariance if by_paths else self.covariance
+        if covariance is None:
             return math.inf
-        return _distance(
-            np.array([each.by_paths for each in self.estimates]) - truth, self.by_paths_covariance
-        )
-
-
-def _distance(off: FloatArray, covariance: FloatArray) -> float:
-    known = covariance.diagonal() > 0.0
-    return float(off[known] @ np.linalg.solve(covariance[np.ix_(known, known)], off[known]))
+        found = np.array([each.by_paths if by_paths else each.value for each in self.estimates])
+        off, known = found - truth, covariance.diagonal() > 0.0
+        return float(off[known] @ np.linalg.solve(covariance[np.ix_(known, known)], off[known]))
