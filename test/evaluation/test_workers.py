@@ -14,7 +14,7 @@ from typing import Any
 import pytest
 
 from contact_dynamics.errors import InvalidFieldError
-from contact_dynamics.evaluation.jobs import Job, run_job, run_jobs
+from contact_dynamics.evaluation.jobs import Job, processes_for, run_job, run_jobs
 from contact_dynamics.evaluation.recording import Recording
 from contact_dynamics.evaluation.result import SourceResult, source_result
 from contact_dynamics.evaluation.settings import Law, Settings
@@ -83,6 +83,17 @@ def test_processes_share_logs_bodies_and_events_and_give_the_numbers_of_one(
     asked = [{row.event for row in half.comparisons} for half in halves]
     assert all(asked)
     assert not asked[0] & asked[1]
+
+
+def test_only_long_or_many_recordings_start_processes_by_default(jobs: list[Job], tmp_path: Path) -> None:
+    large = tmp_path / "large.mcap"
+    with large.open("wb") as file:
+        file.truncate(1 << 40)
+    toss = Job(source=Source(path=DEFAULT_RECORDING), settings=QUICK)
+    assert processes_for(jobs) == processes_for([toss] * 7) == 1
+    assert processes_for([replace(toss, source=Source(path=tmp_path / "missing.mcap"))]) == 1
+    assert processes_for([replace(toss, source=Source(path=large))]) == os.cpu_count()
+    assert processes_for([toss] * 10_000) == os.cpu_count()
 
 
 def test_a_recording_that_kills_its_process_is_named_and_the_rest_are_done(
