@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """First contacts of round bodies: closed forms, grazes, and dense sampling of their support functions."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np
@@ -15,7 +13,7 @@ from contact_dynamics.landing.plane_arrival import first_contact
 from contact_dynamics.motion.forces import Drag
 from contact_dynamics.motion.integrated import forced_motion
 from contact_dynamics.rigid_body.body import BodyState, MassProperties
-from contact_dynamics.shapes.convex import ConvexShape, box, capsule, cone, cylinder, rounded, sphere
+from contact_dynamics.shapes.convex import ConvexShape, Rim, box, capsule, cone, cylinder, rounded, sphere
 from landing.test_plane_arrival import toss
 
 FLOOR = (0.0, 0.0, 0.0)
@@ -139,3 +137,16 @@ def test_a_round_body_under_drag() -> None:
     heights = lowest(shape, down_B) + trajectory.p_WB_W[:, 2]
     assert heights[:-1].min() > 0.0
     assert heights[-1] == pytest.approx(0.0, abs=1e-12)
+
+
+def test_a_rim_is_the_limit_of_many_corners() -> None:
+    angles = np.linspace(0.0, 2.0 * math.pi, 3000, endpoint=False)
+    ring = 0.05 * np.column_stack([np.cos(angles), np.sin(angles), np.zeros(len(angles))])
+    motion = toss(0.6, q_WB=(0.1, 0.7, -0.1, 0.7), v=(0.0, 0.3, 1.0), w=(7.0, 11.0, -4.0))
+    rim = ConvexShape(rims=(Rim((0.0, 0.0, 0.0), UP, 0.05),))
+    smooth = first_contact(motion, rim, FLOOR, UP, horizon=1.0)
+    corners = first_contact(motion, ring, FLOOR, UP, horizon=1.0)
+    assert smooth is not None
+    assert corners is not None
+    # The polygon's sagitta is R (1 - cos(pi / 3000)) = 3e-8 m, at more than 1 m/s.
+    assert 0.0 <= corners.seconds - smooth.seconds < 3e-8
