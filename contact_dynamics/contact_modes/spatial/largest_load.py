@@ -15,17 +15,24 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
+from functools import partial
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
+from contact_dynamics.contact.pairs import pair_jacobians
 from contact_dynamics.contact_modes.letters import STICKS, mode_in_words
-from contact_dynamics.contact_modes.result import ModeVerdict, does_turn
+from contact_dynamics.contact_modes.result import BodiesMode, ModeVerdict, does_turn
 from contact_dynamics.contact_modes.spatial.answer import spatial_contact_modes
+from contact_dynamics.contact_modes.spatial.response import (
+    BodiesContactProblem,
+    bodies_contact_modes,
+    for_each,
+)
 from contact_dynamics.contact_modes.spatial.wrenches import RoundSum
 from contact_dynamics.contact_modes.surface_frame import seen_in_space
 from contact_dynamics.errors import InvalidFieldError
-from contact_dynamics.numerics.vectors import tangents
+from contact_dynamics.numerics.vectors import point_jacobians, tangents
 from contact_dynamics.records import Record
 from contact_dynamics.tolerances import (
     ANY_LOAD,
@@ -45,7 +52,7 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
     from contact_dynamics.contact.contact import ContactSet
-    from contact_dynamics.contact_modes.result import SpatialModeAnswer
+    from contact_dynamics.contact_modes.result import BodiesModeAnswer, SpatialMode, SpatialModeAnswer
     from contact_dynamics.contact_modes.spatial.problem import SpatialContactProblem
     from contact_dynamics.validation import FloatArray
 
@@ -77,7 +84,8 @@ class LargestLoad(Record):
             factor.
         only_rest: Factor up to which rest is the only consistent mode, <= ``factor``. If it is less than
             ``factor``, it was found by bisection, to 1 %, and modes that are consistent only in an interval
-            below it are not searched for. It is 0 if rest is not the only consistent mode without the load.
+            below it are not searched for. It is 0 if rest is not the only consistent mode without the load,
+            or if that is undecided, as often for several bodies.
         verdict_beyond: Verdict just beyond ``factor``, or None if it is infinite. It is UNDECIDED if a
             contact is ``overloaded`` there: the motion depends on how this contact yields.
         modes_beyond: Modes that are consistent just beyond it; none if a contact is overloaded.
@@ -101,6 +109,8 @@ class LargestLoad(Record):
             surely = "it stays" if math.isinf(self.only_rest) else f"{surely} stay"
             return f"LargestLoad: {surely} fixed {_UNITS[self.unit]}"
         then = f"then {_moving(self.modes_beyond)}"
+        if self.verdict_beyond == ModeVerdict.UNDECIDED and not self.modes_beyond:
+            then = "then it is undecided what follows"
         if self.overloaded:
             which = ", ".join(str(contact) for contact in self.overloaded)
             then = f"limited by the maximum normal force of contact{'s' * (len(which) > 1)} {which}"
@@ -112,22 +122,24 @@ class LargestLoad(Record):
 
 
 def largest_load(
-    problem: SpatialContactProblem,
+    problem: SpatialContactProblem | BodiesContactProblem,
     *,
     force_W: ArrayLike = (0.0, 0.0, 0.0),
     torque_W: ArrayLike = (0.0, 0.0, 0.0),
     at_W: ArrayLike | None = None,
     max_normal_forces: ArrayLike | None = None,
 ) -> LargestLoad:
-    """Return the largest factor of a load, in addition to the problem's own wrench, before the body moves.
+    """Return the largest factor of a load, in addition to the problem's own wrench, before a body moves.
 
     With a load of 1 N, the factors are in newtons. Friction cones are round, and ``factor`` is exact to about
     1e-10. Where a circular rim lies flush, it is less by up to 8 % (`LargestLoad`).
 
     Args:
         problem: The contact problem with the wrench without the load, such as the weight alone, under which
-            rest is consistent. On surfaces that move this is rest relative to them.
-        force_W: (3,), N, force of the load, world axes.
+            rest is consistent. On surfaces that move this is rest relative to them. If it has several bodies,
+            its surfaces must be at rest.
+        force_W: (3,), N, force of the load, world axes. For k bodies, (k, 3), here and below, or one vector
+            for all.
         torque_W: (3,), N m, torque of the load about the centre of mass, in addition to that of the force,
             world axes.
         at_W: (3,), m, point at which the force acts, world axes, or None for the centre of mass.
@@ -137,7 +149,7 @@ def largest_load(
     Raises:
         InvalidFieldError: rest is not consistent without the load, or not within ``max_normal_forces``; or
             the load is zero or not finite.
-        NotSupportedError: surfaces do not move as one rigid body.
+        NotSupportedError: surfaces do not move as one rigid body, or those of several bodies move.
 
     Examples:
         >>> import contact_dynamics as cd
@@ -151,11 +163,17 @@ def largest_load(
         >>> print(f"{load.factor:.1f} N, then {load.modes_beyond}")
         78.5 N, then ('ssff',)
     """
-    problem = seen_in_space(problem, as_one="largest_load")
-    force, torque = check_vector3("force_W", force_W), check_vector3("torque_W", torque_W)
+    if isinstance(problem, BodiesContactProblem):
+        check_at_rest("problem.contacts", problem.contacts, "largest_load of several bodies")
+        places = np.array([one.p_WB_W for one in problem.states])
+        checked: Callable[[str, ArrayLike], FloatArray] = partial(for_each, n=len(problem.bodies))
+    else:
+        problem = seen_in_space(problem, as_one="largest_load")
+        places, checked = problem.state.p_WB_W, check_vector3
+    force, torque = checked("force_W", force_W), checked("torque_W", torque_W)
     if at_W is not None:
-        torque = torque + np.cross(check_vector3("at_W", at_W) - problem.state.p_WB_W, force)
-    load = np.concatenate([force, torque])
+        torque = torque + np.cross(checked("at_W", at_W) - places, force)
+    load = np.hstack([force, torque]).ravel()
     if not load.any():
         raise InvalidFieldError("force_W", "no load", "a load, or torque_W")
 
@@ -174,13 +192,17 @@ def largest_load(
 
 
 def largest_acceleration(
-    problem: SpatialContactProblem, direction_W: ArrayLike, *, max_normal_forces: ArrayLike | None = None
+    problem: SpatialContactProblem | BodiesContactProblem,
+    direction_W: ArrayLike,
+    *,
+    max_normal_forces: ArrayLike | None = None,
 ) -> LargestLoad:
-    """Return the largest acceleration of a support, such as a tray or a truck, before the body moves on it.
+    """Return the largest acceleration of a support, such as a tray or a truck, before a body moves on it.
 
     Args:
-        problem: The contact problem of the support at rest. All contacts belong to the support. If it moves,
-            the result is in addition to its present acceleration.
+        problem: The contact problem of the support at rest. All contacts belong to the support, or are
+            between bodies. If the support of one body moves, the result is in addition to its present
+            acceleration.
         direction_W: (3,), direction of the acceleration, world axes. Its length is ignored. A truck that
             drives forward and brakes accelerates backward.
         max_normal_forces: (n,) or one for all contacts, N, as in `largest_load`.
@@ -191,9 +213,13 @@ def largest_acceleration(
     Raises:
         InvalidFieldError: rest is not consistent without the motion, or the direction is zero or not finite.
     """
-    problem = seen_in_space(problem, as_one="largest_acceleration")
     direction = _direction("direction_W", direction_W)
-    found = largest_load(problem, force_W=-problem.body.mass * direction, max_normal_forces=max_normal_forces)
+    if isinstance(problem, BodiesContactProblem):
+        load = np.array([-body.mass * direction for body in problem.bodies])
+    else:
+        problem = seen_in_space(problem, as_one="largest_acceleration")
+        load = -problem.body.mass * direction
+    found = largest_load(problem, force_W=load, max_normal_forces=max_normal_forces)
     return replace(found, unit="m/s^2")
 
 
@@ -424,7 +450,7 @@ def closure(contacts: ContactSet) -> Closure:
     length = float(np.linalg.norm(arms, axis=1).max()) or 1.0
 
     def closes(share: float) -> bool:
-        held = _Held(contacts, arms, length, share)
+        held = _Held(contacts, point_jacobians(arms), np.repeat([1.0, length], 3), share)
         return not any(held.against(wrench).any() for wrench in (*held.units, *-held.units))
 
     force = closes(1.0)
@@ -432,41 +458,49 @@ def closure(contacts: ContactSet) -> Closure:
 
 
 class _Held:
-    """The wrenches, force, N, and torque, N m, that forces at contacts can balance.
+    """The wrenches, force, N, and torque, N m, of one body or each of several that contacts can balance.
 
-    Behind the six numbers of a wrench stands the limit, N, of each normal force that has one, negative.
+    Behind the numbers of the wrenches stands the limit, N, of each normal force that has one, negative.
     """
 
     def __init__(
         self,
         contacts: ContactSet,
-        arms: FloatArray,
-        length: float,
+        jacobians: FloatArray,
+        lengths: FloatArray,
         share: float = 1.0,
         limits: ArrayLike | None = None,
     ) -> None:
-        """Take arms (n, 3), m, a length, m, that compares both, a factor of friction, and limits, N."""
+        """Take Jacobians (n, 3, d), units (d,) of the wrenches, a factor of friction, and limits, N."""
         n = len(contacts)
         most = np.full(n, np.inf) if limits is None else _checked_limits(limits, n)
         self._which = np.flatnonzero(np.isfinite(most) & (most > 0.0))
         self._limits, self._without = most[self._which], np.flatnonzero(most == 0.0)
-        self._scale = np.concatenate([[1.0, 1.0, 1.0, length, length, length], self._limits])
+        self._size = len(lengths)
+        self._scale = np.concatenate([lengths, self._limits])
         self.units = np.diag(self._scale)
         normals, rows, acts = contacts.normals_W, np.eye(n)[:, self._which], most > 0.0
         along = np.array([tangents((x, y, z)) for x, y, z in normals.tolist()]).reshape(-1, 2, 3)
         lean = share * np.minimum(contacts.frictions, LARGEST_NUMBER)[:, None, None] * along
-        leans = [lean, np.cross(arms[:, None], lean), np.zeros((n, 2, len(self._which)))]
+        leans = [lean @ jacobians, np.zeros((n, 2, len(self._which)))]
         self._sum = RoundSum(
-            rays=np.eye(len(self._scale))[6:],
-            axes=(np.hstack([normals, np.cross(arms, normals), rows]) / self._scale)[acts],
+            rays=np.eye(len(self._scale))[self._size :],
+            axes=(np.hstack([np.einsum("ni,nid->nd", normals, jacobians), rows]) / self._scale)[acts],
             leans=(np.concatenate(leans, axis=2) / self._scale)[acts],
         )
 
     @classmethod
-    def of(cls, problem: SpatialContactProblem, limits: ArrayLike | None = None) -> _Held:
+    def of(
+        cls, problem: SpatialContactProblem | BodiesContactProblem, limits: ArrayLike | None = None
+    ) -> _Held:
         """Return those of a problem with limits of its normal forces, (n,) or one, N."""
-        arms = problem.contacts.p_WC_W - problem.state.p_WB_W
-        return cls(problem.contacts, arms, problem.body.mean_radius_of_gyration, limits=limits)
+        contacts = problem.contacts
+        if isinstance(problem, BodiesContactProblem):
+            jacobians, bodies = pair_jacobians(problem.states, contacts.p_WC_W, problem.pairs), problem.bodies
+        else:
+            jacobians, bodies = point_jacobians(contacts.p_WC_W - problem.state.p_WB_W), (problem.body,)
+        lengths = np.repeat([(1.0, body.mean_radius_of_gyration) for body in bodies], 3)
+        return cls(contacts, jacobians, lengths, limits=limits)
 
     def limited(self, wrench_W: FloatArray) -> FloatArray:
         """Return a wrench with the limits behind it."""
@@ -478,7 +512,7 @@ class _Held:
 
     def at_limits(self, plane: FloatArray) -> tuple[int, ...]:
         """Return the contacts whose limits keep a load from growing to the other side of a plane."""
-        shares = -plane[6:] * self._limits
+        shares = -plane[self._size :] * self._limits
         at_limits = self._which[shares > NEXT_TO_A_LIMIT * shares.sum()]
         return tuple(np.union1d(at_limits, self._without).tolist())
 
@@ -486,7 +520,7 @@ class _Held:
         """Return a plane that separates a wrench from what can be balanced, or zeros if it can be."""
         # In these units each limit is as large as the wrench, so neither hides the other's error.
         units = np.ones(len(self._scale))
-        units[6:] = np.linalg.norm(wrench_W[:6] / self._scale[:6])
+        units[self._size :] = np.linalg.norm((wrench_W / self._scale)[: self._size])
         target = -wrench_W / self._scale * units
         found = RoundSum(self._sum.rays, self._sum.axes * units, self._sum.leans * units).rest(target)
         apart = NEAREST_REACHED * np.linalg.norm(target) * np.linalg.norm(found)
@@ -535,8 +569,18 @@ def _not_held(held: _Held, wrench: Callable[[float], FloatArray], first: float, 
     return _not_held(held, wrench, first, middle) or _not_held(held, wrench, middle, last)
 
 
+def _modes_under(
+    problem: SpatialContactProblem | BodiesContactProblem, wrench_W: FloatArray
+) -> SpatialModeAnswer | BodiesModeAnswer:
+    """Return the modes under other wrenches of the bodies than the problem's own."""
+    wrenches = wrench_W.reshape(-1, 2, 3)
+    if isinstance(problem, BodiesContactProblem):
+        return bodies_contact_modes(replace(problem, forces_W=wrenches[:, 0], torques_W=wrenches[:, 1]))
+    return spatial_contact_modes(replace(problem, force_W=wrenches[0, 0], torque_W=wrenches[0, 1]))
+
+
 def _followed(
-    problem: SpatialContactProblem,
+    problem: SpatialContactProblem | BodiesContactProblem,
     held: _Held,
     wrench: Callable[[float], FloatArray],
     factor: float,
@@ -547,9 +591,8 @@ def _followed(
     """Return up to which factor rest is the only consistent mode, and what follows beyond the largest one."""
     rest = STICKS * len(problem.contacts)
 
-    def answer(factor: float) -> SpatialModeAnswer:
-        wrench_W = wrench(factor)
-        return spatial_contact_modes(replace(problem, force_W=wrench_W[:3], torque_W=wrench_W[3:6]))
+    def answer(factor: float) -> SpatialModeAnswer | BodiesModeAnswer:
+        return _modes_under(problem, wrench(factor)[: len(problem.wrench_W)])
 
     def rests_alone(factor: float) -> bool:
         found = answer(factor)
@@ -571,19 +614,28 @@ def _followed(
     )
 
 
-def _check_rests(problem: SpatialContactProblem, held: _Held) -> None:
-    found = spatial_contact_modes(problem)
+def _check_rests(problem: SpatialContactProblem | BodiesContactProblem, held: _Held) -> None:
+    found = _modes_under(problem, problem.wrench_W)
+    plane = held.against(held.limited(problem.wrench_W))
+    is_over = plane.any() and bool(held.at_limits(plane))
+    # Several bodies may fall together with all contacts fixed.
+    falls = isinstance(problem, BodiesContactProblem) and plane.any() and not is_over
     rest = STICKS * len(problem.contacts)
-    if not any(mode.mode == rest and not does_turn(mode.angular_acceleration_W) for mode in found.modes):
+    if falls or not any(mode.mode == rest and not _turns(mode) for mode in found.modes):
         raise InvalidFieldError(
             "problem",
             found.in_short(),
             "one of a body that stays fixed without the additional load or motion",
         )
-    plane = held.against(held.limited(problem.wrench_W))
-    if plane.any() and held.at_limits(plane):
+    if is_over:
         needed = "limits within which normal forces balance the problem's own wrench"
         raise InvalidFieldError("max_normal_forces", "smaller ones", needed)
+
+
+def _turns(mode: SpatialMode | BodiesMode) -> bool:
+    return does_turn(
+        mode.angular_accelerations_W if isinstance(mode, BodiesMode) else mode.angular_acceleration_W
+    )
 
 
 def _checked_limits(limits: ArrayLike, n: int) -> FloatArray:

@@ -280,6 +280,11 @@ class BodiesContactProblem(Record):
         tolerance = check_not_negative("velocity_tolerance", self.velocity_tolerance)
         object.__setattr__(self, "velocity_tolerance", tolerance)
 
+    @property
+    def wrench_W(self) -> FloatArray:
+        """Return the applied force, N, and torque, N m, of each body, (6 k,)."""
+        return np.hstack([self.forces_W, self.torques_W]).ravel()
+
 
 class _Dynamics(NamedTuple):
     """The equations of motion of all bodies."""
