@@ -45,6 +45,7 @@ from contact_dynamics.contact_modes.spatial.completeness import (
     Known,
     completed,
     has_none,
+    staying_bits,
 )
 from contact_dynamics.contact_modes.spatial.exact_modes import (
     as_given,
@@ -366,16 +367,24 @@ def _sought(case: SpatialCase, search: Search, *, beside_rest: bool, hurried: bo
 
 def _searched(case: SpatialCase, search: Search, found: Evidence, *, beside_rest: bool) -> Evidence:
     """Return the modes of a case, with those that a search of the pyramids finds beside known ones."""
+    known = all(one.frame is None for one in search.pyramids)
+    undecided = {staying_bits(case.of_touching(letters)) for letters in found.undecided_modes}
+    if search.completed and found.modes and not (known or _nearly_alike(case)):
+        search.staying = sorted(undecided)  # others are decided
     try:
         kept = found_by(case, search, sharpen=True)
     except TooLargeError:
         return found._replace(undecided=found.undecided or _ENDLESS)
-    if all(one.frame is None for one in search.pyramids):
+    if known:
         return Evidence(kept, _DOUBT if search.doubtful else "")
     every = each_once(case, [*by_letters(case, search, kept), *found.modes])
-    if not found.undecided and len(every) == len(found.modes):
+    further = each_once(case, [*found.modes, *every])[len(found.modes) :]
+    if not further and (search.completed or not found.undecided):
         return found
-    return _with_others(case, search, every, beside_rest=beside_rest, most=MAX_PROGRAMS)
+    among = None
+    if search.completed:
+        among = sorted(undecided | {staying_bits(case.of_touching(mode.mode)) for mode in further})
+    return _with_others(case, search, every, beside_rest=beside_rest, most=MAX_PROGRAMS, among=among)
 
 
 def _nearly_alike(case: SpatialCase) -> bool:
@@ -388,9 +397,18 @@ def _nearly_alike(case: SpatialCase) -> bool:
 
 
 def _with_others(
-    case: SpatialCase, search: Search, modes: list[ResponseMode], *, beside_rest: bool, most: int
+    case: SpatialCase,
+    search: Search,
+    modes: list[ResponseMode],
+    *,
+    beside_rest: bool,
+    most: int,
+    among: list[int] | None = None,
 ) -> Evidence:
-    """Return modes that were found, with all others."""
+    """Return modes that were found, with all others.
+
+    ``among`` may limit the search to some choices of contacts that stay.
+    """
     known = Evidence(modes, "")
     if _is_alone(case, search, modes):
         return Evidence([mode for mode in modes if is_exact(mode)], "")
@@ -400,7 +418,7 @@ def _with_others(
             return known
         if _is_alone(case, search, known.modes):
             return Evidence([mode for mode in known.modes if is_exact(mode)], "")
-    found = _completed(case, search, known.modes, most=most)
+    found = _completed(case, search, known.modes, most=most, among=among)
     return found._replace(undecided=found.undecided or known.undecided)
 
 
@@ -418,7 +436,9 @@ def _mode_of(case: SpatialCase, known: Known) -> ResponseMode:
     )
 
 
-def _completed(case: SpatialCase, search: Search, found: list[ResponseMode], *, most: int) -> Evidence:
+def _completed(
+    case: SpatialCase, search: Search, found: list[ResponseMode], *, most: int, among: list[int] | None
+) -> Evidence:
     """Return the modes that were found and are exact, and those that were missed."""
     exact = [mode for mode in found if is_exact(mode)]
     known = [
@@ -429,7 +449,7 @@ def _completed(case: SpatialCase, search: Search, found: list[ResponseMode], *, 
         )
         for mode in exact
     ]
-    missed = completed(search, known, most=most)
+    missed = completed(search, known, most=most, among=among)
     exact += [_mode_of(case, one) for one in missed.further]
     names = [case.of_all(letters) for letters in missed.undecided]
     undecided = _MISSED.format(", ".join(names)) if names else ""

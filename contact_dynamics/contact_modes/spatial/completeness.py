@@ -44,9 +44,6 @@ from contact_dynamics.contact_modes.spatial.only_motion import is_only_motion
 from contact_dynamics.contact_modes.spatial.regions import (
     directions,
     directions_where_all_slide,
-    flat_of,
-    gains_in,
-    whole,
 )
 from contact_dynamics.contact_modes.spatial.search import PyramidPrograms
 from contact_dynamics.contact_modes.spatial.shared_loads import sliding_together
@@ -63,7 +60,7 @@ if TYPE_CHECKING:
 MAX_PROGRAMS: Final = 3000
 """The search for missed modes is given up after this many linear programs of 0.3 ms."""
 
-ENOUGH_PROGRAMS: Final = 1500
+ENOUGH_PROGRAMS: Final = 2000
 """Maximum number of programs before the pyramids are searched. Few cases take more."""
 
 ENOUGH_PROGRAMS_OF_SEVERAL: Final = 6000
@@ -112,6 +109,11 @@ class Completed(NamedTuple):
     unended: str  # the letters at which the search was given up; those that follow may have modes too
 
 
+def staying_bits(letters: str) -> int:
+    """Return the contacts that stay with some letters, as the bits of a number."""
+    return sum(1 << i for i in _staying(letters))
+
+
 class _TooManyError(Exception):
     """There are too many sets of letters and directions."""
 
@@ -147,20 +149,22 @@ class _Set(NamedTuple):
     turning: list[int]  # the contacts that begin to slide
     flat: Flat | None  # the flat of the region; None if the motions are not parted
     region: Region | None  # the region
-    gains: FloatArray | None  # the power of the applied wrench, as `Within` has it
     ranges: Ranges  # directions of sliding that are demanded
 
 
-def completed(search: Search, known: Sequence[Known], *, most: int) -> Completed:
+def completed(
+    search: Search, known: Sequence[Known], *, most: int, among: list[int] | None = None
+) -> Completed:
     """Return the modes that are not known yet, and the letters that may have more.
 
-    All known modes are exact. The search gives up after ``most`` programs. Whether a body at rest can stick
-    at all contacts is not asked here.
+    All known modes are exact. The search gives up after ``most`` programs. ``among`` may limit it to some
+    choices of contacts that stay. Whether a body at rest can stick at all contacts is not decided here.
     """
-    work = _Work(search, known, most=most)
+    work = _Work(search, known, most=most, among=among)
     unended = ""
     try:
         work.decide_who_stays()
+        search.completed = True
     except _TooManyError:
         unended = work.at
     search.examined += work.examined
@@ -188,6 +192,7 @@ class _Work(PyramidPrograms):
         least: float = STRICT,
         refutes: bool = False,
         most: int = MAX_PROGRAMS,
+        among: list[int] | None = None,
     ) -> None:
         wider = 1.0 / math.cos(math.pi / COARSE)
         super().__init__(
@@ -202,7 +207,8 @@ class _Work(PyramidPrograms):
             facets=COARSE,
             least=least,
         )
-        self._search = search
+        self._search, self.flats = search, search.flats
+        self.staying = among
         self._refutes = refutes
         self._most = most
         self._open = [i for i, one in enumerate(search.pyramids) if one.frame is not None]
@@ -263,19 +269,14 @@ class _Work(PyramidPrograms):
             self._part_letters("".join(stays), open_ones)
             return
         frames = np.array([trials[i].parts[0].rows[:, :-1] for i in open_ones])
-        normals = self.rising[staying, :-1]
         self._decide_without_directions(letters)
-        flats = [flat_of(normals, frames, ())]
-        seen = {frozenset(range(len(open_ones))), flats[0].stuck}
         solved = isinstance(program, Program) and not program.doubtful
-        while flats:
-            flat = flats.pop()
-            # Where no contact must stick, the program has the conditions of the flat's own.
-            if self._decide_flat(flat, letters, open_ones, holds=solved and not flat.stuck):
-                for further in flat.parts(normals, frames):
-                    if further.stuck not in seen:
-                        seen.add(further.stuck)
-                        flats.append(further)
+        # Where no contact must stick, the program has the conditions of the flat's own.
+        self._decide_flats(
+            staying,
+            frames,
+            lambda flat: self._decide_flat(flat, letters, open_ones, holds=solved and not flat.stuck),
+        )
 
     def _part_letters(self, letters: str, open_ones: list[int]) -> None:
         """Decide which contacts stick, and then in which directions the others slide.
@@ -287,7 +288,7 @@ class _Work(PyramidPrograms):
             if not turning:
                 self._decide_without_directions(letters)
             elif not self._is_decided(letters):
-                self._decide(_Set(letters, turning, None, None, None, {}))
+                self._decide(_Set(letters, turning, None, None, {}))
             return
         at = open_ones[0]
         for letter in (STAYS, STICKS):
@@ -334,12 +335,11 @@ class _Work(PyramidPrograms):
         if self._is_decided(own):
             return True
         if len(turning) < len(flat.image.coordinates) - 1:
-            self._decide(_Set(own, turning, None, None, None, {}))
+            self._decide(_Set(own, turning, None, None, {}))
             return True
-        gains = None if self._power is None else gains_in(flat.image, self._power, self.mass)
         may_hold = False
-        for region in whole(flat.image):
-            may_hold |= self._decide(_Set(own, turning, flat, region, gains, {}))
+        for region in flat.regions:
+            may_hold |= self._decide(_Set(own, turning, flat, region, {}))
         return may_hold or bool(flat.image.groups.any())  # a whole group may stick
 
     def _is_decided(self, letters: str) -> bool:
@@ -357,6 +357,8 @@ class _Work(PyramidPrograms):
             for one in (*self._known, *self.further)
             if not one.alone and _staying(one.letters) == staying
         ]
+        if not near and self._programs.free_motions(letters) > 1:
+            return False
         return self._slides_together(letters, near)
 
     def _slides_together(self, letters: str, near: Sequence[FloatArray]) -> bool:
@@ -497,14 +499,15 @@ def _within(modes: _Set) -> Within | None:
     if modes.region is None or modes.flat is None:
         return None
     implied = frozenset(i for i in modes.turning if i not in modes.ranges)
-    return Within(modes.region, modes.flat.image, modes.turning, modes.gains, implied)
+    return Within(modes.region, modes.flat.image, modes.turning, modes.flat.gains, implied)
 
 
 def _takes_power(modes: _Set) -> bool:
     """Return whether the applied wrench resists all motions of a set, so that none of them begins."""
-    if modes.region is None or modes.gains is None:
+    gains = None if modes.flat is None else modes.flat.gains
+    if modes.region is None or gains is None:
         return False
-    return bool((modes.region.rays @ modes.gains).max() < -STRICT * np.abs(modes.gains).max())
+    return bool((modes.region.rays @ gains).max() < -STRICT * np.abs(gains).max())
 
 
 def _widest(turning: list[int], ranges: Ranges) -> tuple[int, float]:

@@ -141,6 +141,10 @@ class HoldingPrograms:
         np.add.at(found, owners, program.shares(len(edges))[:, None] * edges)
         return found, careful
 
+    def free_motions(self, letters: str) -> int:
+        """Return the number of dimensions of the motions with some letters, without regard to forces."""
+        return self._search.freedoms - len(self._rows_of(letters))
+
     def _rows_of(self, letters: str) -> FloatArray:
         """Return independent rows, (k, d + 1), that vanish with some letters."""
         if letters not in self._equations:

@@ -149,13 +149,8 @@ class Flat(NamedTuple):
     stuck: frozenset[int]  # these contacts, and all that stick with them
     rows: FloatArray  # (k, d), combinations of the motion that are zero
     image: Image  # the tangential motions of the contacts that need not stick
-
-    def parts(self, normals: FloatArray, frames: FloatArray) -> Iterator[Flat]:
-        """Yield the flats in which one contact more sticks, with all contacts that must then stick too."""
-        if len(self.image.coordinates) > 1:
-            for i in range(len(frames)):
-                if i not in self.stuck:
-                    yield flat_of(normals, frames, (*self.chosen, i))
+    gains: FloatArray | None = None  # (p,), the power of the applied wrench on coordinates; None if it moves
+    regions: tuple[Region, ...] = ()  # those that together cover all directions
 
 
 def flat_of(normals: FloatArray, frames: FloatArray, chosen: tuple[int, ...]) -> Flat:

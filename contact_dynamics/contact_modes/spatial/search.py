@@ -41,7 +41,7 @@ from contact_dynamics.numerics.linear_spaces import seen_and_unseen
 from contact_dynamics.tolerances import STRICT
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Callable, Sequence
 
     from numpy.typing import NDArray
 
@@ -110,6 +110,9 @@ class PyramidPrograms(ABC):
         self._sizes = sizes
         self.motion = np.column_stack([motion / sizes, free])
         self.examined = 0  # the number of programs solved so far
+        self.staying: list[int] | None = None  # the choices of contacts that stay, as bits; None for all
+        self.completed = False  # whether a search with round cones (`completeness`) has ended
+        self.flats: dict[tuple[tuple[int, ...], tuple[int, ...]], Flat] = {}
         self.most_examined = MAX_EXAMINED if self.freedoms <= ONE_BODY else MAX_EXAMINED_OF_SEVERAL
         self._first_normal = first  # the name of contact 0's normal acceleration
         self.normals = np.array([one.normal for one in touching]).reshape(-1, 3)
@@ -141,7 +144,7 @@ class PyramidPrograms(ABC):
     def decide_who_stays(self) -> None:
         """Decide which contacts stay, and for each choice that may hold all else."""
         root = self._solved(self._root)
-        choices = self._choices()
+        choices = self._choices() if self.staying is None else self.staying
         if root is None:
             return
         if choices is None:
@@ -175,6 +178,35 @@ class PyramidPrograms(ABC):
     @abstractmethod
     def _decide_staying(self, program: AnyProgram, trials: list[Option], /) -> None:
         """Decide all modes in which the same contacts stay."""
+
+    def _decide_flats(
+        self, staying: list[int], frames: FloatArray, decide: Callable[[Flat], bool], /
+    ) -> None:
+        """Decide all flats of contacts that stay, except that of rest. The first one contains all motions.
+
+        ``decide`` decides one, and returns whether some contacts that slide in it may stick instead. The
+        frames, (m, 2, d), are those of the contacts that may slide.
+        """
+        flats = [self._flat(staying, frames, ())]
+        seen = {frozenset(range(len(frames))), flats[0].stuck}
+        while flats:
+            flat = flats.pop()
+            if not decide(flat) or len(flat.image.coordinates) <= 1:
+                continue
+            for i in range(len(frames)):
+                further = flat if i in flat.stuck else self._flat(staying, frames, (*flat.chosen, i))
+                if further.stuck not in seen:
+                    seen.add(further.stuck)
+                    flats.append(further)
+
+    def _flat(self, staying: list[int], frames: FloatArray, chosen: tuple[int, ...]) -> Flat:
+        """Return the flat in which chosen contacts stick, of those that stay and may slide."""
+        key = tuple(staying), chosen
+        if key not in self.flats:
+            found = flat_of(self.rising[staying, :-1], frames, chosen)
+            gains = None if self._power is None else gains_in(found.image, self._power, self.mass)
+            self.flats[key] = found._replace(gains=gains, regions=tuple(whole(found.image)))
+        return self.flats[key]
 
     def _solved(self, program: AnyProgram) -> AnyProgram | None:
         """Return a program that holds edge forces, or None.
@@ -292,29 +324,25 @@ class Search(PyramidPrograms):
             self._decide_letters(program, trials, [0] * len(trials))
             return
         staying = [i for i, letters in enumerate(trials) if letters.letter != SEPARATES]
-        normals, frames = self.rising[staying, :-1], frames[:, :, :-1]
-        at_rest = flat_of(normals, frames, tuple(range(len(open_ones))))
+        frames = frames[:, :, :-1]
+        at_rest = self._flat(staying, frames, tuple(range(len(open_ones))))
         if self._solved(self._within(program, at_rest)) is not None:
             self._note([letters.parts[0] if letters.parts else letters for letters in trials])
-        flats = [flat_of(normals, frames, ())]
-        seen = {at_rest.stuck, flats[0].stuck}
-        while flats:
-            flat = flats.pop()
+
+        def decide(flat: Flat) -> bool:
             decided = list(trials)
             for k in flat.stuck:
                 decided[open_ones[k]] = trials[open_ones[k]].parts[0]
-            if self._decide_flat(self._within(program, flat), decided, flat.image):
-                for further in flat.parts(normals, frames):
-                    if further.stuck not in seen:
-                        seen.add(further.stuck)
-                        flats.append(further)
+            return self._decide_flat(self._within(program, flat), decided, flat)
+
+        self._decide_flats(staying, frames, decide)
 
     def _within(self, program: AnyProgram, flat: Flat) -> AnyProgram:
         rows = np.column_stack([flat.rows, np.zeros(len(flat.rows))])
         tag = CONTACT_TAG - len(self.touching)
         return program.narrowed(Narrowing(rows=rows, equalities=len(rows), tag=tag))
 
-    def _decide_flat(self, program: AnyProgram, trials: list[Option], image: Image) -> bool:
+    def _decide_flat(self, program: AnyProgram, trials: list[Option], flat: Flat) -> bool:
         """Find the modes in which all contacts that are not decided slide.
 
         Return whether there may be modes in which some of these contacts stick, and others slide.
@@ -324,20 +352,19 @@ class Search(PyramidPrograms):
             return False
         trials = [letters._replace(letter=STAYS) if letters.parts else letters for letters in trials]
         self._goal = "".join(letters.letter for letters in trials)
-        common = self._common(image, open_ones)
+        common = self._common(flat, open_ones)
         may_hold = False
-        for region in whole(image):
+        for region in flat.regions:
             may_hold |= self._decide_within(region, program, trials, common)
         self._goal = ""
-        return may_hold or bool(image.groups.any())  # a whole group may stick
+        return may_hold or bool(flat.image.groups.any())  # a whole group may stick
 
-    def _common(self, image: Image, open_ones: list[int]) -> Common:
+    def _common(self, flat: Flat, open_ones: list[int]) -> Common:
         """Return what the regions of a flat have in common."""
-        gains = None if self._power is None else gains_in(image, self._power, self.mass)
         pyramids = [self.pyramids[i] for i in open_ones]
         names = np.array([one.first for one in pyramids])[:, None] + np.arange(len(pyramids[0].edges))
         tangential = np.array([one.tangential() for one in pyramids])
-        return Common(image, open_ones, names, tangential, gains)
+        return Common(flat.image, open_ones, names, tangential, flat.gains)
 
     def _decide_within(
         self, region: Region, program: AnyProgram, trials: list[Option], common: Common

@@ -48,7 +48,7 @@ def sliding_together(search: Search, letters: str, motions: Sequence[FloatArray]
     It is certain that there are none, or that no others move the body differently, if it says so. The body is
     at rest, and may slide in directions near those of the motions, (d,).
     """
-    if any(contact.point[:, -1].any() or contact.sliding.any() for contact in search.touching):
+    if not search.at_rest and any(one.point[:, -1].any() or one.sliding.any() for one in search.touching):
         return Held(None, certain=False)
     free_motions = _motions(search, letters)
     if len(free_motions) > 1 and not motions:

@@ -163,6 +163,12 @@ def test_stacks_that_may_begin_to_turn_about_a_foot_are_decided_soon(seed: int, 
     assert answer.examined <= 1000
 
 
+@pytest.mark.parametrize(("seed", "decade"), [(1073, -8), (1235, -10), (407, -10)])
+def test_no_choice_of_contacts_that_stay_is_decided_twice(seed: int, decade: int) -> None:
+    """After each search of pyramids all modes were sought anew, with 2,000 to 2,900 programs in all."""
+    assert contact_modes(problem_of(flush(seed, noise_of(seed, decade)))).examined <= 1300
+
+
 def test_contacts_that_are_flush_are_left_as_they_are() -> None:
     for seed in range(200, 216):
         assert contact_modes(problem_of(flush(seed, 0.0))).flush_within == 0.0
