@@ -193,17 +193,27 @@ class Body(HasMassProperties):
             InvalidFieldError: `inertia.mesh` rejects an argument, the file cannot be read, or trimesh is not
                 installed.
             TooLargeError: there are more vertices than `MAX_VERTICES`.
+
+        Warns:
+            ImplausibleBodyWarning: no body of that size has the mass of a file's mesh, so the file is
+                probably in millimetres.
         """
+        file = None
         if isinstance(vertices_F, (str, Path)):
             if triangles is not None:
                 raise InvalidFieldError("triangles", "triangles beside a file", "None")
-            from contact_dynamics.shapes.files import read_mesh
+            from contact_dynamics.shapes.files import read_mesh, warn_if_implausible
 
-            vertices_F, triangles = read_mesh(vertices_F)
+            file = vertices_F
+            vertices_F, triangles = read_mesh(file)
         elif triangles is None:
             raise InvalidFieldError("triangles", None, "(m, 3) indices of vertices")
         vertices = check_positive("scale", scale) * check_array("vertices_F", vertices_F, (None, 3))
-        return cls.of(name, mesh(vertices, triangles, mass=mass, density=density), vertices_F=vertices)
+        solid = mesh(vertices, triangles, mass=mass, density=density)
+        body = cls.of(name, solid, vertices_F=vertices)
+        if file is not None:
+            warn_if_implausible(f"mesh {file}", solid, body.shape.moved(body.p_FB_F))
+        return body
 
     @classmethod
     @checks_types

@@ -132,6 +132,8 @@ def test_meshes_are_read_beside_the_description(tmp_path: Path) -> None:
         InvalidFieldError, match=r"file must be a mesh: STL, OBJ, PLY, glTF, got .*brick\.stl"
     ):
         Body.from_urdf(description)
+    with pytest.warns(ImplausibleBodyWarning, match=r"mesh .*brick\.stl: .* density of 5\.93e-07 kg/m\^3"):
+        Body.from_mesh(file, mass=0.4)
     with pytest.raises(InvalidFieldError, match="triangles must be None"):
         Body.from_mesh(file, [[0, 1, 2]], mass=1.0)
 

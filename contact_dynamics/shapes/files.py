@@ -79,7 +79,7 @@ def read_link(source: str | Path, link: str | None) -> Link:
     mass = _mass(element, f"link {name!r}")
     primitives = [_primitive(collision, folder) for collision in element.findall("collision")]
     shape = _shape([each.shape() for each in primitives], name)
-    _warn_if_implausible(name, mass, shape)
+    warn_if_implausible(f"link {name!r}", mass, shape)
     return Link(name, mass, shape, primitives)
 
 
@@ -262,7 +262,7 @@ def _parsed(text: str | None, what: str, count: int) -> list[float]:
     return numbers
 
 
-def _warn_if_implausible(name: str, mass: MassDistribution, shape: ConvexShape) -> None:
+def warn_if_implausible(what: str, mass: MassDistribution, shape: ConvexShape) -> None:
     """Warn if the mass cannot lie inside the shape: lengths are in mm, or numbers are placeholders."""
     if shape.is_empty:
         return
@@ -277,7 +277,7 @@ def _warn_if_implausible(name: str, mass: MassDistribution, shape: ConvexShape) 
     if volume > 0.0 and not THINNEST * volume <= mass.mass <= DENSEST * volume:
         found.append(f"the mass in its bounding box has a density of {mass.mass / volume:.3g} kg/m^3")
     if found:
-        message = f"link {name!r}: {' and '.join(found)}. Are lengths in metres, and masses in kg?"
+        message = f"{what}: {' and '.join(found)}. Are lengths in metres, and masses in kg?"
         warnings.warn(message, ImplausibleBodyWarning, stacklevel=frames_to_caller())
 
 
