@@ -67,7 +67,7 @@ class Obstacle(Record):
             found = f"{places} different corner{'' if places == 1 else 's'}"
             raise InvalidFieldError("vertices_W", found, "three or more, not on a line")
         object.__setattr__(self, "features", features)
-        warn_if_concave(f"obstacle {self.name!r}", vertices)
+        warn_if_concave(f"obstacle {self.name!r}", vertices, divided_faces=False)
 
 
 def closest_points(features: Features, points: FloatArray) -> FloatArray:

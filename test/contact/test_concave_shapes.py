@@ -43,6 +43,15 @@ def mass(name: str) -> MassDistribution:
 
 
 @pytest.mark.parametrize("name", OUTLINES)
+@pytest.mark.parametrize("is_plate", [False, True])
+def test_an_obstacle_with_the_corners_of_a_profile_warns(name: str, *, is_plate: bool) -> None:
+    """It has no mass that shows whether they are those of a divided face, as in stairs beside a ramp."""
+    given = corners(name)[: len(OUTLINES[name]) if is_plate else None]
+    with pytest.warns(ConcaveShapeWarning, match="obstacle 'step': .* corners are in faces of their hull"):
+        Obstacle(name="step", vertices_W=given, friction=0.3, restitution=0.0)
+
+
+@pytest.mark.parametrize("name", OUTLINES)
 def test_the_mesh_of_a_profile_warns(name: str) -> None:
     """Its inner corners are in the end faces of its hull, also as float32 and turned, in triangles."""
     with pytest.warns(ConcaveShapeWarning, match=rf"body '{name}': .* corners are in faces of their hull"):
@@ -84,7 +93,7 @@ def test_a_convex_mesh_does_not_warn(seed: int) -> None:
     mesh = (mesh @ Rotation.random(random_state=seed).as_matrix() + rng.normal(size=3)).astype(np.float32)
     body = Body.of("solid", inertia.convex_hull(mesh, mass=1.0), vertices_F=mesh)
     assert len(body.vertices_B) > 0
-    Obstacle(name="solid", vertices_W=mesh, friction=0.3, restitution=0.0)
+    Obstacle(name="solid", vertices_W=triangles.reshape(-1, 3), friction=0.3, restitution=0.0)
 
 
 @pytest.mark.filterwarnings("error")
