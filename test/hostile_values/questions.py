@@ -35,11 +35,10 @@ QUESTIONS: Calls = {
             "force_W": [0.0, 0.0, 1.0],
             "torque_W": [0.0, 0.0, 0.1],
             "gravity_W": [0.0, 0.0, -9.8],
-            "out_of_plane_tolerance": 1e-6,
             "velocity_tolerance": 1e-9,
             "distance_tolerance": 1e-6,
-            "friction_facets": 8,
             "margin_length": 0.1,
+            "include_margins": True,
         },
     ),
     "ImpactQuestion": (
