@@ -234,9 +234,10 @@ def sliding_faces(
     """Yield, for all that contacts can do together, the sides of its cuts on which each that stays slides.
 
     The rows, (m, d), unit, are the normal accelerations of n contacts, and what must be positive besides. The
-    cuts, (k, d) of each contact, part the ways in which it slides. `TooLargeError` is raised if more than
-    ``most`` sets of planes meet in lines.
+    cuts, (k, d) of each contact, part the ways in which it slides. `TooLargeError` is raised first if more
+    than ``most`` sets of planes meet in lines.
     """
+    parts = []
     for face in cone_faces(rows):
         if face >> len(cuts):
             continue
@@ -246,6 +247,8 @@ def sliding_faces(
         cut = np.vstack([np.zeros((0, rows.shape[1])), *(cuts[i] for i in stay)]) @ free
         if math.isfinite(most):
             _check_meetings(np.vstack([above, cut]), most)
+        parts.append((stay, above, cut))
+    for stay, above, cut in parts:
         ends = list(itertools.accumulate((len(cuts[i]) for i in stay), initial=0))
         for signs in _open_faces(above, cut):
             yield {i: signs[at:end] for i, (at, end) in zip(stay, itertools.pairwise(ends), strict=True)}
@@ -262,33 +265,32 @@ def _check_meetings(rows: FloatArray, most: float) -> None:
         )
 
 
-def _open_faces(above: FloatArray, cut: FloatArray) -> list[list[int]]:
-    """Return the signs of ``cut`` on every face of their arrangement where all of ``above`` are positive."""
+def _open_faces(above: FloatArray, cut: FloatArray) -> Iterator[list[int]]:
+    """Yield the signs of ``cut`` on every face of their arrangement where all of ``above`` are positive."""
     rows = np.vstack([above, cut])
     sizes = np.linalg.norm(rows, axis=1)
     rows = rows / np.where(sizes > ROW_TOLERANCE, sizes, 1.0)[:, None]
     rows[sizes <= ROW_TOLERANCE] = 0.0
     spread, basis = np.linalg.svd(rows)[1:] if rows.size else (np.zeros(0), rows)
     rows = rows @ basis[: int((spread > ROW_TOLERANCE).sum())].T
-    wanted = (1 << len(above)) - 1
-    rays = []
-    for heights in _rays(rows) @ rows.T:
-        plus = sum(1 << int(k) for k in np.flatnonzero(heights > 10.0 * ROW_TOLERANCE))
-        minus = sum(1 << int(k) for k in np.flatnonzero(heights < -10.0 * ROW_TOLERANCE))
-        if not minus & wanted:
-            rays.append((plus, minus))
-    rays = sorted(set(rays))
-    faces = {(0, 0)}
-    newest = [(0, 0)]
-    while newest:
-        composed = {(plus | (p & ~minus), minus | (m & ~plus)) for plus, minus in newest for p, m in rays}
-        newest = list(composed - faces)
-        faces |= composed
-    return [
-        [(plus >> k & 1) - (minus >> k & 1) for k in range(len(above), len(rows))]
-        for plus, minus in faces
-        if plus & wanted == wanted
-    ]
+    wanted, everything = (1 << len(above)) - 1, (1 << len(rows)) - 1
+    heights = _rays(rows) @ rows.T
+    heights = heights[(heights[:, : len(above)] >= -10.0 * ROW_TOLERANCE).all(axis=1)]
+    signs = np.sign(np.where(np.abs(heights) > 10.0 * ROW_TOLERANCE, heights, 0.0))
+    rays = [(_mask(one > 0.0), _mask(one < 0.0)) for one in np.unique(signs, axis=0)]
+    around: dict[int, set[tuple[int, int]]] = {}  # what faces add on some planes that contain a smaller face
+    faces = [(0, 0)]
+    seen = {*faces}
+    while faces:
+        plus, minus = faces.pop()
+        if plus & wanted == wanted:
+            yield [(plus >> k & 1) - (minus >> k & 1) for k in range(len(above), len(rows))]
+        planes = everything & ~(plus | minus)
+        if planes not in around:
+            around[planes] = {(p & planes, m & planes) for p, m in rays}
+        further = {(plus | p, minus | m) for p, m in around[planes]} - seen
+        seen |= further
+        faces += further
 
 
 def _rays(rows: FloatArray) -> FloatArray:

@@ -35,7 +35,7 @@ from contact_dynamics.records import Record
 from contact_dynamics.tolerances import ROW_TOLERANCE
 
 if TYPE_CHECKING:
-    from collections.abc import Collection, Sequence
+    from collections.abc import Collection, Iterator, Sequence
 
     from numpy.typing import ArrayLike
 
@@ -118,15 +118,19 @@ def spatial_wrench_sets(
     edges = search.edges.shape[1]
     if edges > MAX_EDGES:
         raise TooLargeError("contacts", f"{edges} edges of friction pyramids", f"at most {MAX_EDGES}")
-    every = [(case.of_all(way.letter for way in ways), ways) for ways in ways_of(search)]
-    wanted = sorted(one for one in every if modes is None or one[0] in modes)
-    if len(wanted) > MAX_WRENCH_SETS:
-        allowed = f"at most {MAX_WRENCH_SETS}: fewer contacts, or fewer friction_facets"
-        raise TooLargeError("contacts", f"{len(wanted)} sets of wrenches", allowed)
+    wanted: list[tuple[str, tuple[Way, ...]]] = []
+    for ways in ways_of(search):
+        mode = case.of_all(way.letter for way in ways)
+        if modes is None or mode in modes:
+            wanted.append((mode, ways))
+        if len(wanted) > MAX_WRENCH_SETS:
+            allowed = f"at most {MAX_WRENCH_SETS}: fewer contacts, or fewer friction_facets"
+            raise TooLargeError("contacts", f"more than {MAX_WRENCH_SETS} sets of wrenches", allowed)
     metric = np.array([1.0, 1.0, 1.0, *[body.mean_radius_of_gyration] * 3])
     turning = wrench - case.motion.wrench  # the part of the wrench that a turning body needs
     return tuple(
-        _wrench_set(case, search, ways, mode=mode, metric=metric, turning=turning) for mode, ways in wanted
+        _wrench_set(case, search, ways, mode=mode, metric=metric, turning=turning)
+        for mode, ways in sorted(wanted)
     )
 
 
@@ -165,8 +169,8 @@ MAX_MEETINGS: Final = 10_000
 second."""
 
 
-def ways_of(search: Search) -> list[tuple[Way, ...]]:
-    """Return all that touching contacts can do together, each with a `Way` for every contact.
+def ways_of(search: Search) -> Iterator[tuple[Way, ...]]:
+    """Yield all that touching contacts can do together, each with a `Way` for every contact.
 
     Raises:
         TooLargeError: more than `MAX_MEETINGS` sets of planes meet in lines.
@@ -177,16 +181,17 @@ def ways_of(search: Search) -> list[tuple[Way, ...]]:
     rows = np.vstack([search.rising, height])
     rows /= np.linalg.norm(rows, axis=1)[:, None]
     cuts = [_borders(of, pyramid) for of, pyramid in zip(touching, search.pyramids, strict=True)]
-    found: dict[tuple[Way, ...], None] = {}
+    found: set[tuple[Way, ...]] = set()
     for signs_of in sliding_faces(rows, cuts, MAX_MEETINGS):
         ways = [Way(SEPARATES, -1)] * len(touching)
         for i, signs in signs_of.items():
             ways[i] = _way(signs, len(search.pyramids[i].edges))
-        found[tuple(ways)] = None
+        if tuple(ways) not in found:
+            found.add(tuple(ways))
+            yield tuple(ways)
     rest = tuple(Way(STAYS if one.frame is None else STICKS, -1) for one in search.pyramids)
     if rest not in found and not any(np.any(contact.point[:, -1]) for contact in touching):
         raise _undecided()  # nothing keeps a body from resting
-    return list(found)
 
 
 def sliding_range(pyramid: Pyramid, way: Way) -> tuple[FloatArray, FloatArray]:

@@ -305,3 +305,16 @@ def test_misuse_is_refused_by_name() -> None:
         wrench_sets(spatial_problem(BODY, state(), feet(0.2, 0.4), (0.0, 0.0, 0.0), friction_facets=40))
     with pytest.raises(TooLargeError, match="sets of wrenches"):
         wrench_sets(spatial_problem(BODY, state(), feet(0.2, 0.4), (0.0, 0.0, 0.0), friction_facets=12))
+
+
+@pytest.mark.parametrize(
+    ("corners", "facets"), [(4, 16), (4, 32), (6, 12), (6, 20), (8, 16), (16, 8), (32, 4)]
+)
+def test_sizes_that_could_never_be_built_are_rejected(corners: int, facets: int) -> None:
+    """Ways of sliding are counted until they are too many, which is before any set is built."""
+    ring = [(math.cos(a), math.sin(a), -1.0) for a in np.arange(corners) * 2.0 * math.pi / corners]
+    around = contact_set(ring, [(0, 0, 1)] * corners, [0.5] * corners)
+    with pytest.raises(
+        TooLargeError, match=r"at most (2000|10000): fewer contacts, or fewer friction_facets"
+    ):
+        wrench_sets(spatial_problem(BODY, state(), around, (0.0, 0.0, 0.0), friction_facets=facets))
