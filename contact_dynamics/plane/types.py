@@ -102,6 +102,9 @@ class PlanarWrench(Record):
 _FLAT: Final = 0.0
 """1/m, the curvature of a flat surface."""
 
+_UNTURNED: Final = 0.0
+"""rad/s, the angular velocity of a surface that is not given one."""
+
 _NONE: Final = (0.0, 0.0)
 """The velocity and acceleration of a surface at rest."""
 
@@ -144,7 +147,7 @@ class PlanarContact(Record):
     body_curvature: float = math.inf
     surface_curvature: float = _FLAT
     surface_velocity: Vector2 = _NONE
-    surface_angular_velocity: float = 0.0
+    surface_angular_velocity: float = _UNTURNED
     surface_acceleration: Vector2 = _NONE
     surfaces_move: bool = field(init=False, repr=False, default=False)
 
@@ -167,7 +170,7 @@ class PlanarContact(Record):
         if (
             self.surface_velocity is not _NONE
             or self.surface_acceleration is not _NONE
-            or self.surface_angular_velocity != 0.0
+            or self.surface_angular_velocity is not _UNTURNED
         ):
             self._check_motion()
 

@@ -68,7 +68,7 @@ CALLS_WITH_CONTACTS: Calls = {
     "PlanarBody": (PlanarBody, {"mass": 1.0, "inertia": 0.5}),
     "PlanarVelocity": (PlanarVelocity, LEAN),
     "PlanarWrench": (PlanarWrench, {"f": (0.0, -9.8), "moment": 0.1}),
-    "PlanarContact": (PlanarContact, TIP),
+    "PlanarContact": (PlanarContact, {**TIP, "surface_angular_velocity": 0.5}),
     "next_landing": (
         next_landing,
         {
