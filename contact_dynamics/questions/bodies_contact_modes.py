@@ -18,7 +18,7 @@ from contact_dynamics.questions.contact_modes import TAKEN_AS_FLUSH
 from contact_dynamics.questions.context import Context, check_optional, or_default
 from contact_dynamics.questions.extent import check_contacts, check_extent, check_wrench
 from contact_dynamics.questions.services import Answer, Question
-from contact_dynamics.questions.subject import NEWEST, NamedState, StateSource, subject_of
+from contact_dynamics.questions.subject import NEWEST, NamedState, StateSource, at_one_time, subject_of
 from contact_dynamics.questions.touching import outside_shape
 from contact_dynamics.tolerances import FLUSH, STATES_APART
 from contact_dynamics.validation import FloatArray, check_array
@@ -44,7 +44,7 @@ class BodiesContactModeQuestion(Question["BodiesContactModeAnswer"]):
     Attributes:
         bodies: Each a body, or the name of a body of the context's world.
         states: State of each body, or a reference to a published state. The default is the latest published
-            state of each, which may be at different times. Covariances have no effect.
+            state of each, at the time of the oldest of these. Covariances have no effect.
         contacts: Contacts of all bodies, as in `BodiesContactProblem`.
         pairs: For each contact, the body into which its normal points, and the other body, or None for the
             world. They are indices into ``bodies``.
@@ -163,9 +163,9 @@ def answer(question: BodiesContactModeQuestion, context: Context | None = None) 
     check_contacts(contacts)
     gravity_W = known.world.gravity_W if question.gravity_W is None else question.gravity_W
     subjects, forces_W = [], []
-    for i in range(len(question.bodies)):
+    for i, source in enumerate(at_one_time(question.bodies, question.states, known)):
         try:
-            subject = subject_of(question.bodies[i], question.states[i], known)
+            subject = subject_of(question.bodies[i], source, known)
             check_extent(subject.body.mass_properties, subject.state)
             force_W = question.forces_W[i] + subject.body.mass_properties.mass * gravity_W
             check_wrench(force_W, question.torques_W[i])

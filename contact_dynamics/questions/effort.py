@@ -18,7 +18,7 @@ from contact_dynamics.errors import ContactDynamicsError
 from contact_dynamics.motion.forces import NO_DRAG, NO_WRENCH
 from contact_dynamics.questions.context import Problem
 from contact_dynamics.questions.sample_times import UntilContact, UntilPlane
-from contact_dynamics.questions.subject import NEWEST, PublishedState, at_stamp, subject_of
+from contact_dynamics.questions.subject import NEWEST, PublishedState, at_one_time, at_stamp, subject_of
 
 if TYPE_CHECKING:
     from contact_dynamics.contact.contact import ContactSet
@@ -57,7 +57,11 @@ _CORNERS_OF_A_RIM: Final = 8  # in which the base of a cylinder touches
 def excerpt(question: Question[Answer], context: Context) -> Context:
     """Return the part of the context with which another process gives the same answer."""
     about = question.about
-    sources = list(zip(getattr(about, "bodies", ()), getattr(about, "states", ()), strict=False))
+    sources: list[tuple[Body | str, StateSource]] = []
+    if hasattr(about, "bodies") and hasattr(about, "states"):
+        sources += zip(about.bodies, about.states, strict=True)
+        with suppress(ContactDynamicsError):  # which the answer will raise
+            sources += zip(about.bodies, at_one_time(about.bodies, about.states, context), strict=True)
     body, source = getattr(about, "body", None), getattr(about, "state", None)
     if body is not None and source is not None:
         sources.append((body, source))

@@ -133,6 +133,25 @@ def at_stamp(source: StateSource, stamp_ns: int) -> StateSource:
     return source
 
 
+def at_one_time(
+    bodies: Sequence[Body | str], sources: Sequence[StateSource], context: Context
+) -> tuple[StateSource, ...]:
+    """Return where the states of several bodies come from: the newest ones are those at one time.
+
+    It is that of the oldest of them, since the others are known before and after it. Bodies in contact do not
+    move freely, so that none can be followed beyond its newest state.
+
+    Raises:
+        ContactDynamicsError: as `subject_of`.
+    """
+    newest = [
+        subject_of(body, source, context).state.stamp_ns
+        for body, source in zip(bodies, sources, strict=True)
+        if isinstance(source, PublishedState) and source.stamp_ns is None
+    ]
+    return tuple(at_stamp(source, min(newest, default=0)) for source in sources)
+
+
 def subject_of(
     body: Body | str, source: StateSource, context: Context, *, fit: Fitting | None = None
 ) -> Subject:

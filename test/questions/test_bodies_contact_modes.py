@@ -36,6 +36,7 @@ from contact_dynamics.questions import (
 from contact_dynamics.questions.bodies_contact_modes import MAX_BODIES
 from contact_dynamics.questions.effort import excerpt
 from contact_dynamics.questions.services import service_of
+from contact_dynamics.questions.subject import NEWEST
 from contact_dynamics.rigid_body.body import BodyState
 from contact_dynamics.world import Body, World
 from contact_dynamics_interfaces.msg import BodyState as BodyStateMsg
@@ -98,7 +99,8 @@ def test_states_are_those_that_each_body_published() -> None:
         ask(newest, Context(world=WORLD, states=published(("lower", STATES[0])), now_ns=lambda: 10**9))
 
 
-def test_at_a_stamp_all_bodies_are_seen_at_the_same_time() -> None:
+@pytest.mark.parametrize(("source", "ms"), [(PublishedState(stamp_ns=180 * 10**6), 180), (NEWEST, 200)])
+def test_all_bodies_are_seen_at_the_same_time(source: PublishedState, ms: int) -> None:
     """The stack is carried along at 0.2 m/s, and the states of the two bodies come in turn."""
 
     def at(body: int, ms: int) -> BodyState:
@@ -106,12 +108,16 @@ def test_at_a_stamp_all_bodies_are_seen_at_the_same_time() -> None:
         return BodyState(p_WB_W=place, q_WB=[0, 0, 0, 1], v_WB_W=[0.2, 0, 0], stamp_ns=ms * 10**6)
 
     states = published(*((WORLD.bodies[i].name, at(i, ms + 50 * i)) for ms in (100, 200) for i in (0, 1)))
-    source = PublishedState(stamp_ns=180 * 10**6)
-    question = BodiesContactModeQuestion(**STACK, states=[source, source])
-    for i, body in enumerate(ask(question, Context(world=WORLD, states=states)).bodies):
+    question, whole = (
+        BodiesContactModeQuestion(**STACK, states=[source, source]),
+        Context(world=WORLD, states=states),
+    )
+    found = ask(question, whole)
+    for i, body in enumerate(found.bodies):
         # An interpolated place of less than a metre is accurate to rounding.
-        np.testing.assert_allclose(body.state.p_WB_W, at(i, 180).p_WB_W, atol=1e-12)
-        assert body.state.stamp_ns == 180 * 10**6
+        np.testing.assert_allclose(body.state.p_WB_W, at(i, ms).p_WB_W, atol=1e-12)
+        assert body.state.stamp_ns == ms * 10**6
+    assert same(ask(question, excerpt(question, whole)), found)
 
 
 def test_without_gravity_nothing_presses() -> None:

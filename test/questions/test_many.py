@@ -13,7 +13,9 @@ from contact_dynamics import BodyState, ContactSet, RestitutionLaw
 from contact_dynamics.errors import InvalidFieldError, TooLargeError
 from contact_dynamics.impact import ImpactOutcome
 from contact_dynamics.questions import AtTimes, Context, ImpactQuestion, TumblingQuestion, ask
+from contact_dynamics.questions.effort import excerpt
 from contact_dynamics.questions.many import MAX_STATES, ManyImpactsQuestion, ManyStates, ManyTumblingsQuestion
+from message_values.shared import same
 from questions.known_world import CUBE, WORLD
 
 COUNT = 40
@@ -50,6 +52,11 @@ def test_many_tumblings_are_as_many_single_ones() -> None:
         np.testing.assert_allclose(found.states.p_WB_W[i], alone.p_WB_W[0], rtol=0.0, atol=1e-14)
         assert abs(found.states.q_WB[i] @ alone.q_WB[0]) == pytest.approx(1.0, abs=1e-14)
         np.testing.assert_allclose(found.states.w_WB_W[i], alone.w_WB_W[0], rtol=0.0, atol=1e-13)
+
+
+def test_a_worker_needs_no_published_states_for_a_batch() -> None:
+    question = ManyTumblingsQuestion(body="cube", states=drawn(3), seconds=np.array([0.5]))
+    assert same(ask(question, excerpt(question, KNOWN)), ask(question, KNOWN))
 
 
 @pytest.mark.parametrize("law", RestitutionLaw)
