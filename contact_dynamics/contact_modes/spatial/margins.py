@@ -322,7 +322,10 @@ class SpatialModeMargin(Record):
         length: m, the length in that metric.
         change_W: (6,), the smallest change: force, N, and torque about the centre of mass, N m, world axes.
             It is zero if there is none.
-        verdict_beyond: Verdict just beyond the boundary, or the present verdict if there is no boundary.
+        verdict_beyond: Verdict under a change that is larger by `BEYOND_MARGIN`, relative to the margin or to
+            the wrench, whichever is larger. It is valid up to the next boundary. Within 1e-6 of the boundary,
+            `contact_modes` may be UNDECIDED or still return the mode, because rounding hides slow motions.
+            If there is no boundary, it is the present verdict.
         modes_beyond: Letters of the consistent modes there, each listed once.
         unknown: Reason why the margin is unknown. Empty unless the margin is NaN.
     """

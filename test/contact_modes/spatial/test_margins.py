@@ -22,6 +22,7 @@ from contact_dynamics.contact_modes import (
 )
 from contact_dynamics.rigid_body.body import BodyState, MassProperties
 from contact_modes.evidence import balance, pyramid_wrenches, spatial_problem
+from oracles.boxes_nearly_flush import flush
 from oracles.modes_on_planes import INERTIA, MASS, made
 from sweeps import seeds
 
@@ -340,3 +341,23 @@ def test_a_body_that_round_cones_wedge_stays_under_any_wrench() -> None:
     assert math.isfinite(statics(problem).stable_disturbance)
     margin = next(found for found in mode_margins(problem) if found.mode == "ffff")
     assert (margin.margin, margin.unknown) == (math.inf, "")
+
+
+@seeds(range(3000, 3010), slow=range(3010, 3200))
+def test_modes_a_millionth_beyond_the_margin_are_those_beyond(seed: int) -> None:
+    """Nearer than that, some verdicts are UNDECIDED, or the mode is still found."""
+    box = flush(seed, 0.0)
+    problem = spatial_problem(
+        MassProperties(mass=MASS, I_B=np.diag(box.inertia)),
+        state(tuple(box.velocity)),
+        ContactSet(p_WC_W=box.points, normals_W=box.normals, frictions=box.frictions),
+        box.wrench[:3],
+        box.wrench[3:],
+    )
+    answer = contact_modes(problem)
+    for margin in mode_margins(problem, answer) if answer.verdict == ModeVerdict.UNIQUE else ():
+        if not 0.0 < margin.margin < math.inf:
+            continue
+        for further in (1e-6, 1e-5, 1e-3):
+            found = modes_at(problem, (1.0 + further) * margin.change_W)
+            assert sorted(set(found)) == sorted(margin.modes_beyond)
