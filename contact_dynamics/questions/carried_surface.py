@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from contact_dynamics.constants import seconds_between
-from contact_dynamics.errors import InvalidFieldError, StaleStateError
+from contact_dynamics.errors import InvalidFieldError, NoStateError, StaleStateError
 from contact_dynamics.motion.between_states import state_between
 from contact_dynamics.questions.uncertain_state import state_of
 from contact_dynamics.records import Record
@@ -33,6 +33,10 @@ ACCELERATION_WINDOW: Final = 0.05
 """Duration over which the accelerations of a carrying body are estimated by default, s."""
 
 _LEAST_STATES: Final = 3
+"""Number of states from which accelerations are estimated at least, over a longer time where necessary."""
+
+_SLOWEST_S: Final = 1.0
+"""Longest time that these may take, s."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
@@ -48,7 +52,8 @@ class CarriedSurface(Record):
         surface: The plane in the body's published frame F: its fields ``p_WS_W`` and ``normal_W`` are in F.
             It is at rest in F.
         acceleration_window: s, >= 0. The linear and angular accelerations of the body are the slopes of its
-            velocities over this time, by least squares. With 0 s or fewer than three states they are zero.
+            velocities over this time, or over three states if that is longer, by least squares. With 0 s they
+            are zero.
 
     Raises:
         InvalidFieldError: the surface moves in F, or the window is negative or not finite.
@@ -86,7 +91,7 @@ def with_carried(
         max_extrapolation: s, the longest time by which a motion is extrapolated.
 
     Raises:
-        NoStateError: a carrying body has no state at that time.
+        NoStateError: a carrying body has no state at that time, or too few for its acceleration.
         StaleStateError: its latest state is too old.
     """
     planes: list[Surface] = []
@@ -106,15 +111,21 @@ def with_carried(
                 f"got {ahead:.3f} s"
             )
             raise StaleStateError(message)
-        window = states.window(name, earlier, each.acceleration_window)
-        known = [state_of(state) for state in (*window, *([] if later is None else [later]))]
+        known = [state_of(state) for state in states.window(name, earlier, each.acceleration_window)]
+        if len(known) < _LEAST_STATES and each.acceleration_window > 0.0:  # slowly published
+            kept = states.window(name, earlier, _SLOWEST_S)[-_LEAST_STATES:]
+            known = [state_of(state) for state in kept]
+        known += [] if later is None else [state_of(later)]
+        if len(known) < _LEAST_STATES and each.acceleration_window > 0.0:
+            message = (
+                f"surface {each.surface.name!r}: at least {_LEAST_STATES} states of {name!r} are required to "
+                f"estimate its acceleration, got {len(known)} (with an acceleration_window of 0, it is zero)"
+            )
+            raise NoStateError(message)
         planes.append(_plane_at(each, world.body(name), known, instant_ns))
         if later is None and ahead > 0.0:
             age = f"{1e3 * ahead:.3g} ms older than the question's state"
             warnings.append(f"surface {each.surface.name!r}: the latest state of {name!r} is {age}")
-        if each.acceleration_window > 0.0 and len(known) < _LEAST_STATES:
-            few = f"too few states of {name!r} ({len(known)}) for its acceleration, which is taken as 0"
-            warnings.append(f"surface {each.surface.name!r}: {few}")
     return replace(world, surfaces=(*world.surfaces, *planes)), tuple(warnings)
 
 

@@ -343,4 +343,4 @@ def test_rerun_draws_nothing_of_a_log_by_itself(session: Session, tmp_path: Path
     assert "nav_msgs.msg.Odometry:message" in printed
     drawn = "Transform3D|Transform|Points3D|Boxes3D|Mesh3D|Asset3D|Arrows3D|LineStrips3D"
     assert re.findall(rf"\b(?:{drawn}):", printed) == []
-    assert "viewport stays empty" in (ROOT / "docs" / "log.md").read_text(encoding="utf-8")
+    assert "listed over time, not drawn" in (ROOT / "docs" / "log.md").read_text(encoding="utf-8")

@@ -162,12 +162,28 @@ def test_after_the_latest_state_the_motion_continues_and_the_answer_says_for_how
         modes_of_cup(context(motion.published(), max_extrapolation=0.04), cup)
 
 
-def test_too_few_states_for_an_acceleration_are_a_warning_and_none_are_an_error() -> None:
+@pytest.mark.parametrize("period", [1, 3, 5])
+@pytest.mark.parametrize(("share", "letter"), [(0.95, "f"), (1.05, "c")])
+def test_accelerations_are_estimated_from_three_states_if_they_are_published_slowly(
+    period: int, share: float, letter: str
+) -> None:
+    """At 100, 33 and 20 Hz."""
+    motion = Motion(a=(share * FRICTION * G, 0.0, 0.0))
+    states = StateStore(history=5.0, timeout=0.5)
+    for k in range(0, 20, period):
+        states.add("tray", motion.state(0.01 * k))
+    verdict, letters, warnings = modes_of_cup(context(states), motion.state(0.145, (0.05, 0.0, 0.06)))
+    assert (verdict, letters, warnings) == (ModeVerdict.UNIQUE, {letter}, ())
+
+
+def test_too_few_states_for_an_acceleration_are_an_error() -> None:
     motion = Motion()
     cup = motion.state(0.01, (0.0, 0.0, 0.06))
-    _, _, warnings = modes_of_cup(context(motion.published(2)), cup)
-    (warning,) = warnings
-    assert warning == "surface 'top': too few states of 'tray' (2) for its acceleration, which is taken as 0"
+    with pytest.raises(NoStateError, match=r"at least 3 states of 'tray' are required .* got 2 "):
+        modes_of_cup(context(motion.published(2)), cup)
+    uniform = CarriedSurface(body_name="tray", surface=TOP, acceleration_window=0.0)
+    _, letters, warnings = modes_of_cup(context(motion.published(2), uniform), cup)
+    assert (letters, warnings) == ({"f"}, ())
     with pytest.raises(NoStateError, match="'tray'"):
         modes_of_cup(context(motion.published(0)), cup)
 
