@@ -18,8 +18,9 @@ cdef int _STICKS_IN_COMPRESSION, _REVERSES_IN_COMPRESSION, _STICKS_IN_RESTITUTIO
 cdef class PlanarStrike:
     cdef int law, outcome
     cdef bint jams
-    cdef double a, b, c, det
-    cdef double p_stop, t_stop, p_compression, t_compression, p_end, t_end, v_t, v_n
+    cdef public double a, b, c, det
+    cdef double p_stop, t_stop, p_compression, t_compression, v_t
+    cdef readonly double p_end, t_end, v_n
     cdef readonly double v_t_before, v_n_before, i_x, i_y, v_x, v_y, w
 
     cpdef Py_ssize_t strike_all(
@@ -34,4 +35,4 @@ cdef class PlanarStrike:
     ) noexcept nogil
     cdef void respond(self, double mass, double inertia, double r_t, double r_n) noexcept nogil
     @cython.locals(holds=cython.bint, stops_early=cython.bint, stops_late=cython.bint)
-    cdef void follow(self, double v_t, double v_n, double friction, double restitution) noexcept nogil
+    cpdef void follow(self, double v_t, double v_n, double friction, double restitution) noexcept nogil
