@@ -16,7 +16,7 @@ here=$(dirname "$0")
 tests=${TESTS:-test}
 # What needs ROS, rerun, Matplotlib or the built environment is not physics. test/test_setup/test_matrix.py holds that nothing else does.
 beside="nodes demo recording replay viewing plots msg_adapters evaluation test_setup architecture"
-beside="$beside monitoring/test_live.py monitoring/test_monitor.py test_examples.py test_document_types.py test_quoted_numbers.py test_site.py cases/test_page.py questions/test_services.py questions/test_warnings.py test_lecture_figures.py test_notebooks.py test_public_names.py"
+beside="$beside monitoring/test_live.py monitoring/test_monitor.py test_examples.py test_document_types.py test_quoted_numbers.py test_site.py cases/test_page.py questions/test_bodies_contact_modes.py questions/test_services.py questions/test_warnings.py test_lecture_figures.py test_notebooks.py test_public_names.py"
 ros_tests="test/nodes test/recording test/replay test/demo test/msg_adapters"
 # pytest-xdist is one of them. The others compile the core.
 tools="$(grep -E '^(pytest|hypothesis|mpmath)\b' requirements/test.txt) $(grep -E '^(cython|setuptools)\b' requirements/build.txt)"

@@ -152,6 +152,7 @@ NOT_MEASURED: dict[
         "as 50 and 90 % prediction regions",
         "inside the 50 or 90 % prediction region",
         "pushed with 2 N",
+        "pushed with 0.6 N",
         "with 0.5, 1 and 1.5 N",
         "last 0.1 s",
         "some milliseconds before",

@@ -63,7 +63,7 @@ def test_the_time_of_the_log_gives_its_states_and_its_answers(asked: Asked, tmp_
     for old, new in zip(before, after, strict=True):
         assert old.response_event is not None
         assert new.response_event is not None
-        if not old.service.endswith("contact_mode"):
+        if not old.service.endswith("/predict_contact_mode"):
             continue
         explicit += 1
         answers = [decode_without_ros(call).response[0] for call in (old.response_event, new.response_event)]

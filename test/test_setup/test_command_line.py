@@ -227,7 +227,7 @@ sys.exit(main(sys.argv[1:]))
 """
     told = without_ros.run("-c", outdated, "replay", "--help")
     assert (told.returncode, told.stderr) == (0, "")
-    assert "plain Python" in without_ros.run("-c", outdated, "replay", "none").stderr
+    assert "plain Python" in without_ros.run("-c", outdated, "replay", "verify", "none").stderr
 
 
 def test_verbs_use_one_thread_of_linear_algebra_unless_more_are_asked_for() -> None:
