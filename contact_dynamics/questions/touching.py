@@ -57,7 +57,8 @@ def contacts_of(
             raise NoContactError(f"{message}: the world has none")
         surface, gap = nearest
         raise NoContactError(
-            f"{message} (distance_tolerance): the nearest, {surface.name!r}, is {gap:.6g} m away"
+            f"{message} (distance_tolerance): the nearest, {surface.name!r}, is {gap:.6g} m away (a measured "
+            "state requires a covariance or a larger tolerance)"
         )
     return contacts
 

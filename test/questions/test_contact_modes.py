@@ -48,7 +48,7 @@ def test_contacts_are_found_from_the_shape() -> None:
         answer(replace(AT_REST, state=state(HALF + 2e-4)), CONTEXT)
     assert str(caught.value) == (
         "contacts: no point of 'cube' is within 1e-09 m of a surface (distance_tolerance): the nearest, "
-        "'floor', is 0.0002 m away"
+        "'floor', is 0.0002 m away (a measured state requires a covariance or a larger tolerance)"
     )
     with pytest.raises(NoContactError, match="'cube' is within 1e-09 m of a surface: the world has none"):
         answer(AT_REST, replace(CONTEXT, world=World(bodies=(CUBE,))))
