@@ -315,6 +315,9 @@ class Surface(Record):
         restitution: Coefficient of restitution between this surface and any body, in [0, 1].
         lasting_factor: Factor of the friction coefficient for sustained contact in tosses (`toss`), >= 0: the
             friction coefficient of a sliding face can differ from that of corners in impacts.
+        lasting_speed: m/s, >= 0. In tosses, the friction coefficient of impacts at a lower approach speed
+            changes linearly with the speed, from that of sustained contact at zero to ``friction``. If zero,
+            all impacts have ``friction``.
         v_WS_W: (3,), m/s, velocity of the surface's material point at ``p_WS_W``, world axes.
         w_WS_W: (3,), rad/s, angular velocity of the surface, world axes. If ``v_WS_W`` is zero, the axis goes
             through ``p_WS_W``.
@@ -324,8 +327,8 @@ class Surface(Record):
 
     Raises:
         InvalidFieldError: a number is not finite, the point or a velocity or acceleration is beyond
-            `LARGEST_NUMBER`, the normal is not a unit vector, the friction or the factor is negative, or the
-            restitution is outside [0, 1].
+            `LARGEST_NUMBER`, the normal is not a unit vector, the friction, the factor or the speed is
+            negative, or the restitution is outside [0, 1].
     """
 
     name: str
@@ -334,6 +337,7 @@ class Surface(Record):
     friction: float
     restitution: float
     lasting_factor: float = 1.0
+    lasting_speed: float = 0.0
     v_WS_W: FloatArray = field(default_factory=_at_rest)
     w_WS_W: FloatArray = field(default_factory=_at_rest)
     a_WS_W: FloatArray = field(default_factory=_at_rest)
@@ -351,6 +355,7 @@ class Surface(Record):
             friction: float,
             restitution: float,
             lasting_factor: float = ...,
+            lasting_speed: float = ...,
             v_WS_W: ArrayLike = ...,
             w_WS_W: ArrayLike = ...,
             a_WS_W: ArrayLike = ...,
@@ -367,6 +372,7 @@ class Surface(Record):
         object.__setattr__(self, "friction", check_not_negative("friction", self.friction))
         object.__setattr__(self, "restitution", check_within("restitution", self.restitution, 0.0, 1.0))
         object.__setattr__(self, "lasting_factor", check_not_negative("lasting_factor", self.lasting_factor))
+        object.__setattr__(self, "lasting_speed", check_not_negative("lasting_speed", self.lasting_speed))
         for name in ("v_WS_W", "w_WS_W", "a_WS_W", "alpha_WS_W"):
             if (given := getattr(self, name)) is not _AT_REST:
                 moved = check_motion(name, given)

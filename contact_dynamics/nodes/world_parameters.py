@@ -297,6 +297,12 @@ def _read_surface(source: ParameterSource, name: str) -> Surface | Obstacle:
         1.0,
         "Factor of the friction coefficient for sustained contact in tosses, >= 0.",
     )
+    lasting_speed = source.value(
+        f"{key}.lasting_speed",
+        0.0,
+        "Approach speed, m/s, below which the friction coefficient of impacts in tosses changes linearly "
+        "with the speed, from that of sustained contact at zero. Zero: no change.",
+    )
 
     def build() -> Surface | Obstacle:
         check_friction("friction", friction)
@@ -317,6 +323,7 @@ def _read_surface(source: ParameterSource, name: str) -> Surface | Obstacle:
             friction=friction,
             restitution=restitution,
             lasting_factor=lasting_factor,
+            lasting_speed=lasting_speed,
             v_WS_W=velocity,
         )
         if rate and any(velocity):

@@ -20,8 +20,8 @@ cdef double CONE_CREEPS, NO_SHARED_RESPONSE, STRIKES, TIED_APPROACH
 cdef class Shared
 
 
-@cython.locals(pose=Pose, flat=Flat, surface=cython.int, corner=cython.int, outcome=cython.int)
-cpdef tuple routh(Strike impact, Solid solid, list y, tuple touch, double friction, bint skips=*)
+@cython.locals(pose=Pose, flat=Flat, surface=cython.int, corner=cython.int, outcome=cython.int, friction=cython.double)
+cpdef tuple routh(Strike impact, Solid solid, list y, tuple touch, bint skips=*, bint lasts=*)
 @cython.locals(fastest=cython.double, tie=cython.double, rate=cython.double, tied=cython.int)
 cpdef list next_in_turn(Solid solid, list y, list touching, list rates)
 @cython.locals(

@@ -27,7 +27,7 @@ from contact_dynamics.impact.spatial.response import refuse
 from contact_dynamics.tolerances import CONE_CREEPS, NO_SHARED_RESPONSE, STRIKES, TIED_APPROACH
 from contact_dynamics.toss import vectors as vec
 from contact_dynamics.toss.cone_forces import ConeForces
-from contact_dynamics.toss.solid import contacts_of, pose_of, properties_of, state_of
+from contact_dynamics.toss.solid import approaches, contacts_of, pose_of, properties_of, state_of
 
 if TYPE_CHECKING:
     from contact_dynamics.contact.contact import ContactSet
@@ -58,17 +58,18 @@ def routh(  # noqa: PLR0917
     solid: Solid,
     y: Numbers,
     touch: Touch,
-    friction: float,
     skips: bool = False,  # noqa: FBT001, FBT002  C has no keywords
+    lasts: bool = False,  # noqa: FBT001, FBT002  C has no keywords
 ) -> tuple[Numbers, int]:
     """Return the state after the impact at one contact, which approaches or jams, and the outcome.
 
     ``impact`` makes it (lecture 27), and has the impulse afterwards. If it ``skips``, nothing happens to a
-    contact that separates.
+    contact that separates. If the contact ``lasts``, the friction is that of sustained contact.
     """
     surface, corner = touch
     pose, flat = pose_of(solid, y), solid.flats[surface]
     arm = pose.arm(surface, corner)
+    friction = flat.friction if lasts else flat.friction_at(vec.dot(pose.velocity(arm), flat.normal))
     impact.body.take(solid.mass, solid.inertia, (y[3], y[4], y[5], y[6]), arm, pose.v, pose.w)
     outcome = impact.strike(flat.normal, friction, flat.restitution, False, STRIKES, skips)  # noqa: FBT003  as compiled
     if outcome < 0:
@@ -97,7 +98,7 @@ def next_in_turn(solid: Solid, y: Numbers, touching: list[Touch], rates: list[fl
     if tied < 2:
         return [touching[rates.index(fastest)]]
     flats = [solid.flats[flat] for flat, _ in touching]
-    materials = [(flat.restitution, flat.strike_friction) for flat in flats]
+    materials = [(flat.restitution, flat.friction_at(fastest)) for flat in flats]
     return [touching[k] for k in next_to_strike(rates, materials, tolerance=STRIKES, tie=tie)]
 
 
@@ -160,7 +161,7 @@ def tied_strike(
         ),
         (_moving(pose, one), _moving(pose, other), _moving(pose, along)),
         restitution=flat.restitution,
-        friction=flat.strike_friction,
+        friction=flat.friction_at(vec.dot(pose.velocity(arms[0]), flat.normal)),
         law=law,
         tolerance=STRIKES,
     )
@@ -231,7 +232,9 @@ def simultaneous_strike(
 def _striking(solid: Solid, y: Numbers, touching: list[Touch]) -> ContactSet:
     """Return touching contacts with the friction of strikes."""
     contacts = contacts_of(solid, y, touching)
-    frictions = [solid.flats[surface].strike_friction for surface, _ in touching]
+    rates = approaches(solid, y, touching)
+    flats = [solid.flats[surface] for surface, _ in touching]
+    frictions = [flat.friction_at(rate) for flat, rate in zip(flats, rates, strict=True)]
     return replace(contacts, frictions=np.array(frictions), body_curvatures=None)
 
 

@@ -34,7 +34,7 @@ cpdef laid_flat(Solid solid, list y, dict faces, law)
                count=cython.int, sinking=cython.double, rise=cython.double, x=cython.double, y=cython.double,
                z=cython.double, numbers="double[::1]")
 cdef double _chatter(Solid solid, Pose pose, int surface, list corners, PlanarStrike strike) except -1.0
-@cython.locals(flat=Flat, p=cython.double, across=(double, double, double))
+@cython.locals(flat=Flat, p=cython.double, rate=cython.double, across=(double, double, double))
 cdef void _bounce(Solid solid, Pose pose, int surface, int corner, PlanarStrike strike, double least) except *
 cdef (double, double, double) _turned_by(Pose pose, (double, double, double) arm, (double, double, double) impulse) noexcept
 @cython.locals(i=cython.int, j=cython.int, k=cython.int, high=cython.double, face=Face)

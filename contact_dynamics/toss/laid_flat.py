@@ -179,9 +179,8 @@ def _bounce(  # noqa: PLR0917
     strike.b = vec.dot(vec.cross(arm, d), by_n)
     strike.c = 1.0 / solid.mass + vec.dot(vec.cross(arm, n), by_n)
     strike.det = strike.a * strike.c - strike.b * strike.b
-    strike.follow(
-        vec.dot(velocity, d), min(vec.dot(velocity, n), 0.0), flat.strike_friction, flat.restitution
-    )
+    rate = min(vec.dot(velocity, n), 0.0)
+    strike.follow(vec.dot(velocity, d), rate, flat.friction_at(rate), flat.restitution)
     p = strike.p_end + max(least - strike.v_n, 0.0) / strike.c
     pose.v = vec.plus(pose.v, 1.0 / solid.mass, vec.combined(p, n, strike.t_end, d))
     pose.w = vec.plus(pose.w, 1.0, vec.combined(p, by_n, strike.t_end, by_d))

@@ -8,7 +8,7 @@ from contact_dynamics.impact.spatial.response cimport Strike
 from contact_dynamics.toss.flight cimport Descent
 from contact_dynamics.toss.impacts cimport routh
 from contact_dynamics.toss.law_spread cimport Kick
-from contact_dynamics.toss.solid cimport Flat, Solid, approaches, low_corners
+from contact_dynamics.toss.solid cimport Solid, approaches, low_corners
 from contact_dynamics.toss.strike cimport Unsettled, strike
 
 cdef extern from *:
@@ -28,7 +28,7 @@ cdef class Flights:
     cdef Descent descent
     cdef Strike impact
 
-    @cython.locals(i=cython.Py_ssize_t, j=cython.Py_ssize_t, k=cython.int, solid=Solid, flat=Flat, descent=Descent,
+    @cython.locals(i=cython.Py_ssize_t, j=cython.Py_ssize_t, k=cython.int, solid=Solid, descent=Descent,
                    gravity=(double, double, double), seconds=cython.double, part=cython.int, y=list, after=list,
                    touching=list, kick=Kick)
     cpdef void fly(

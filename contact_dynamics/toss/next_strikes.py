@@ -192,7 +192,6 @@ class Flights:
             part = descent.striking(SAMPLED_ARRIVAL)
             parts[j], rebounds[j] = part, 0.0
             if part >= 0:
-                flat = solid.flats[part // solid.count]
                 touch = (part // solid.count, part % solid.count)
                 touching = [each for _, each in low_corners(solid, y, SAMPLED_ARRIVAL, 0.0)]
                 if len(touching) > 1:
@@ -215,7 +214,7 @@ class Flights:
                     y = after
                     rebounds[j] = 0.0 if staying else min(approaches(solid, y, touching))
                 else:
-                    after, _ = routh(self.impact, solid, y, touch, flat.strike_friction, True)  # noqa: FBT003
+                    after, _ = routh(self.impact, solid, y, touch, True)  # noqa: FBT003
                     if self.kicks:
                         numbers = [drawn[i, k] for k in range(10)]
                         kick = self.kicks[i]

@@ -268,8 +268,7 @@ class Simulation(History):
         solid = self.solid
         before = energy_of(solid, self.y)
         if len(touching) == 1:
-            friction = solid.flats[touching[0][0]].friction
-            self.y, outcome = routh(self.impact, solid, self.y, touching[0], friction)
+            self.y, outcome = routh(self.impact, solid, self.y, touching[0], False, True)  # noqa: FBT003
             if outcome == ImpactOutcome.NO_IMPULSE:
                 return self._pass_over()
             self.lost_in_strikes += before - energy_of(solid, self.y)

@@ -19,7 +19,9 @@ cdef class Flat:
     cdef readonly str name
     cdef readonly (double, double, double) normal
     cdef readonly ((double, double, double), (double, double, double)) tangents
-    cdef readonly double level, friction, restitution, strike_friction
+    cdef readonly double level, friction, restitution, strike_friction, lasting_speed
+
+    cpdef double friction_at(self, double rate) noexcept
 
 
 cdef class Above

@@ -55,7 +55,8 @@ class Flat:
         level: m, the height of the flat along its normal.
         friction: Coefficient of friction mu of sustained contact.
         restitution: Coefficient of restitution e.
-        strike_friction: Coefficient of friction mu in strikes.
+        strike_friction: Coefficient of friction mu in fast strikes.
+        lasting_speed: m/s, the approach speed from which strikes are fast (`friction_at`).
     """
 
     def __init__(  # noqa: PLR0917
@@ -66,10 +67,12 @@ class Flat:
         friction: float,
         restitution: float,
         strike_friction: float,
+        lasting_speed: float,
         tangents: tuple[Vector3, Vector3],
     ) -> None:
         self.name, self.normal, self.level, self.tangents = name, normal, level, tangents
         self.friction, self.restitution, self.strike_friction = friction, restitution, strike_friction
+        self.lasting_speed = lasting_speed
 
     def __reduce__(self) -> tuple[object, ...]:
         return Flat, (
@@ -79,8 +82,16 @@ class Flat:
             self.friction,
             self.restitution,
             self.strike_friction,
+            self.lasting_speed,
             self.tangents,
         )
+
+    def friction_at(self, rate: float) -> float:
+        """Return the friction in a strike at a normal velocity, m/s, which is negative for an approach."""
+        if self.lasting_speed == 0.0 or -rate >= self.lasting_speed:
+            return self.strike_friction
+        share = max(-rate, 0.0) / self.lasting_speed
+        return self.friction + share * (self.strike_friction - self.friction)
 
 
 class Solid:
@@ -140,7 +151,7 @@ class Solid:
         """Take the parameters of the body and the flats from row ``i``.
 
         Rows, (n, 18 + 3 c + 3 s), contain the inertia and its inverse, c corners, and for each of s flats the
-        friction of sustained contact, the restitution, and the friction in strikes.
+        friction of sustained contact, the restitution, and the friction in fast strikes.
         """
         self.inertia, self.inverse = matrix_in(rows, i, 0), matrix_in(rows, i, 9)
         self.properties, self.reach, k = None, 0.0, 18 + 3 * self.count
@@ -352,7 +363,9 @@ def solid_of(
         level = float(surface.p_WS_W @ surface.normal_W)
         lasting = factor * surface.friction
         e, mu = surface.restitution, surface.friction
-        flats.append(Flat(surface.name, normal, level, lasting, e, mu, tangents(normal)))
+        flats.append(
+            Flat(surface.name, normal, level, lasting, e, mu, surface.lasting_speed, tangents(normal))
+        )
     I_B = body.mass_properties.I_B
     vertices = body.shape.vertices
     g_x, g_y, g_z = world.gravity_W.tolist()

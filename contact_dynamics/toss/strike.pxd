@@ -28,7 +28,7 @@ cdef class Unsettled:
     cdef void note(self, list y, list touching) noexcept
 
 
-@cython.locals(k=cython.int, outcome=cython.int, flat=Flat, group=list)
+@cython.locals(k=cython.int, outcome=cython.int, group=list)
 cpdef strike(Solid solid, list y, list touching, Strike impact, law, list rates, Unsettled unsettled, together, tuple first)
 @cython.locals(fast=cython.double, rate=cython.double, is_slow=cython.bint)
 cpdef low_rebounds_ended(Solid solid, list y, list touching, Unsettled unsettled)

@@ -137,8 +137,7 @@ def strike(  # noqa: PLR0917
         elif len(group) > 1:
             at_once = tied_strike(solid, y, group, law)
         if at_once is None:
-            flat = solid.flats[group[0][0]]
-            y, outcome = routh(impact, solid, y, group[0], flat.strike_friction)
+            y, outcome = routh(impact, solid, y, group[0])
             new = [Struck(group[0], impact.impulse, OUTCOMES[outcome])]
         else:
             y, new = at_once
