@@ -27,7 +27,7 @@ from contact_dynamics.calibration.problems import (
     warnings_of,
 )
 from contact_dynamics.calibration.result import Calibration, Estimate, MeasuredGravity, Outlier
-from contact_dynamics.calibration.slides import lasting_frictions
+from contact_dynamics.calibration.slides import LASTING_SPEED, lasting_frictions
 from contact_dynamics.calibration.strikes import at_rests, strikes_of
 from contact_dynamics.errors import InvalidFieldError
 from contact_dynamics.measured.motion import MeasuredMotion
@@ -312,22 +312,31 @@ def _body(model: Model, values: FloatArray) -> Body:
 
 
 def _surfaces(model: Model, values: FloatArray, lasting: Sequence[LastingFriction]) -> tuple[Surface, ...]:
-    """Return the surfaces. Without observed slides, the friction of sustained contact keeps its factor."""
+    """Return the surfaces. Without observed slides, sustained contact keeps its factor and speed.
+
+    With sharp corners it keeps the speed too: on recorded tosses, `LASTING_SPEED` then made errors larger.
+    """
     described = model.describe(values)
     slid = {each.surface: each.friction for each in lasting}
-    return tuple(
-        Surface(
-            name=surface.name,
-            p_WS_W=described.points[k],
-            normal_W=described.normals[k],
-            friction=float(described.frictions[k]),
-            restitution=float(described.restitutions[k]),
-            lasting_factor=slid[surface.name] / float(described.frictions[k])
-            if surface.name in slid and described.frictions[k] > 0.0
-            else surface.lasting_factor,
+    surfaces = []
+    for k, surface in enumerate(model.surfaces):
+        friction = float(described.frictions[k])
+        factor, speed = surface.lasting_factor, surface.lasting_speed
+        if surface.name in slid and friction > 0.0:
+            factor = slid[surface.name] / friction
+            speed = LASTING_SPEED if described.rounding > 0.0 else speed
+        surfaces.append(
+            Surface(
+                name=surface.name,
+                p_WS_W=described.points[k],
+                normal_W=described.normals[k],
+                friction=friction,
+                restitution=float(described.restitutions[k]),
+                lasting_factor=factor,
+                lasting_speed=speed,
+            )
         )
-        for k, surface in enumerate(model.surfaces)
-    )
+    return tuple(surfaces)
 
 
 def _outliers(data: Data, observed: Sequence[Observed], found: Estimation) -> tuple[Outlier, ...]:

@@ -207,6 +207,7 @@ def server_parameters(found: Calibration) -> str:
             f"{key}.friction: {float(surface.friction)!r}",
             f"{key}.restitution: {float(surface.restitution)!r}",
             f"{key}.lasting_factor: {float(surface.lasting_factor)!r}",
+            f"{key}.lasting_speed: {float(surface.lasting_speed)!r}",
         ]
     return "\n".join(lines) + "\n"
 

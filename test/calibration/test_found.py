@@ -110,7 +110,7 @@ def test_the_calibrated_body_and_surface_have_the_estimates(found: Calibration) 
 def test_the_server_takes_the_parameters_as_they_are(found: Calibration, tmp_path: Path) -> None:
     """Read by the server's own reading, they describe the calibrated body and surface to the last bit."""
     path = tmp_path / "calibrated.yaml"
-    found = replace(found, surfaces=(replace(found.surfaces[0], lasting_factor=1.4),))
+    found = replace(found, surfaces=(replace(found.surfaces[0], lasting_factor=1.4, lasting_speed=0.3),))
     path.write_text(server_parameters(found), encoding="utf-8")
     world = read_server_parameters(ParameterFile(path)).world
     body = world.body("brick")
@@ -121,12 +121,8 @@ def test_the_server_takes_the_parameters_as_they_are(found: Calibration, tmp_pat
     assert world.gravity_W.tolist() == found.gravity_W.tolist()
     floor = world.surfaces[0]
     calibrated = found.surfaces[0]
-    assert (floor.name, floor.friction, floor.restitution, floor.lasting_factor) == (
-        "floor",
-        calibrated.friction,
-        calibrated.restitution,
-        calibrated.lasting_factor,
-    )
+    for field in ("name", "friction", "restitution", "lasting_factor", "lasting_speed"):
+        assert getattr(floor, field) == getattr(calibrated, field), field
 
 
 def test_the_report_says_what_was_used_found_and_contradicted(found: Calibration) -> None:

@@ -11,10 +11,12 @@ import numpy as np
 import pytest
 
 from calibration.made_tosses import BRICK, FLOOR, MASS, WORLD
-from contact_dynamics.calibration import Calibration, calibrate
+from contact_dynamics.calibration import Calibration, Free, calibrate
+from contact_dynamics.calibration.free import STANDARD
 from contact_dynamics.calibration.impacts import velocities_after
 from contact_dynamics.calibration.model import Model
 from contact_dynamics.calibration.report import content_of, report
+from contact_dynamics.calibration.slides import LASTING_SPEED
 from contact_dynamics.calibration.toss_uncertainty import toss_uncertainty
 from contact_dynamics.measured.motion import MeasuredMotion, StateColumns, motions_of
 from contact_dynamics.rigid_body.body import BodyState
@@ -57,12 +59,15 @@ def whole_toss(
 
 
 @pytest.fixture(scope="module")
-def found() -> Calibration:
-    """From tosses whose lasting friction scatters."""
+def motions() -> list[MeasuredMotion]:
+    """Tosses whose lasting friction scatters."""
     random = np.random.default_rng(5)
-    return calibrate(
-        [whole_toss(random, LASTS + SCATTER * random.standard_normal()) for _ in range(24)], with_paths=False
-    )
+    return [whole_toss(random, LASTS + SCATTER * random.standard_normal()) for _ in range(24)]
+
+
+@pytest.fixture(scope="module")
+def found(motions: list[MeasuredMotion]) -> Calibration:
+    return calibrate(motions, with_paths=False)
 
 
 def test_slides_tell_the_friction_that_lasts_and_strikes_theirs(found: Calibration) -> None:
@@ -82,9 +87,18 @@ def test_tosses_are_sampled_with_it(found: Calibration) -> None:
     known = toss_uncertainty(found)
     (floor,) = found.surfaces
     assert floor.lasting_factor * floor.friction == pytest.approx(lasting.friction)
+    assert floor.lasting_speed == LASTING_SPEED
     np.testing.assert_array_equal(known.lasting_factors, [floor.lasting_factor])
     deviation = known.lasting_factor_stds * found.surfaces[0].friction
     assert deviation == pytest.approx(math.hypot(lasting.std, lasting.scatter))
+
+
+def test_with_sharp_corners_strikes_of_all_speeds_keep_one_friction(motions: list[MeasuredMotion]) -> None:
+    free = [each for each in STANDARD if each is not Free.ROUNDING]
+    sharp = calibrate(motions, free=free, with_paths=False)
+    (floor,) = sharp.surfaces
+    assert sharp.body.shape.rounding == floor.lasting_speed == 0.0
+    assert floor.lasting_factor > 1.0
 
 
 def test_the_report_tells_it(found: Calibration) -> None:
@@ -96,13 +110,14 @@ def test_the_report_tells_it(found: Calibration) -> None:
 
 
 def test_without_slides_strikes_tell_what_is_known() -> None:
-    """Four tosses are too few, so that the factor stays as it is configured."""
+    """Four tosses are too few, so that the factor and the speed stay as they are configured."""
     random = np.random.default_rng(6)
     motions = [whole_toss(random, LASTS) for _ in range(4)]
     for configured in (1.0, 1.2):
-        world = replace(WORLD, surfaces=(replace(FLOOR, lasting_factor=configured),))
+        world = replace(WORLD, surfaces=(replace(FLOOR, lasting_factor=configured, lasting_speed=0.2),))
         found = calibrate([replace(motion, world=world) for motion in motions], with_paths=False)
         assert found.lasting_frictions == ()
+        assert found.surfaces[0].lasting_speed == 0.2
         known = toss_uncertainty(found)
         np.testing.assert_array_equal(known.lasting_factors, [configured])
         np.testing.assert_array_equal(known.lasting_factor_stds, [0.0])
