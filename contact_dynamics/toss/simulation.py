@@ -408,7 +408,8 @@ class Simulation(History):
     def _rests(self, touching: list[Touch]) -> bool:
         """Return whether the body has come to rest, and set its velocities to zero if it has."""
         energy = kinetic_energy_of(self.solid, self.y)
-        if energy > min(self._slow(touching), self.slow):
+        # A body that has stopped is always checked: the energy at the last check may have been zero.
+        if energy > max(min(self._slow(touching), self.slow), self._stopped_within(0.0)):
             return False
         touching = self.touching_now(math.inf)
         still = [*self.y[:7], *[0.0] * 6]
