@@ -4,8 +4,8 @@
 Model: the residuals of the fitted motion are white noise and, if an impact is among the states, two straight
 lines with a break. A wrong force bends a single line instead. Two lines are therefore compared with one
 parabola by their likelihoods with noise of unknown size, and must be far better, because noise of trackers is
-correlated. The search starts with the last few states and doubles their number in each round, so that it
-finds the latest of several impacts.
+correlated. The search starts with the last few states and doubles their number in each round.
+Of several impacts, it therefore finds the latest.
 
 A body that rests, slides or is carried does not fall: its acceleration is off by more than half of gravity.
 

@@ -5,7 +5,7 @@ The equations are Newton's and Euler's laws about the centre of mass, dp/dt = v,
 dR/dt = [w] R with w = R I^-1 R^T L. Forces may be constant in world or in body axes, drag in still air, and a
 user's function of time and state.
 
-Method: L in world axes is a variable, so that it is constant to the last bit without torque. The attitude is
+Method: L in world axes is a variable, and therefore constant to the last bit without torque. The attitude is
 a quaternion whose rates depend on q / |q| only; the integration error of |q| therefore has no effect, and
 results are divided by |q|. Rotation vectors would require restarts. Position and velocity are deviations from
 the free parabola, which is therefore exact. SciPy's DOP853 (Hairer, Norsett and Wanner, Solving Ordinary

@@ -212,7 +212,7 @@ def contact_mode_answers(draw: st.DrawFn, p_FB_F: np.ndarray = NO_OFFSET) -> Con
 
 @st.composite
 def bodies_modes(draw: st.DrawFn, bodies: int, contacts: int) -> BodiesMode:
-    """A mode of so many bodies and contacts."""
+    """A mode with these numbers of bodies and contacts."""
     of_contacts = draw(modes_of(contacts))
     return BodiesMode(
         accelerations_W=draw(arrays(bodies, 3)),

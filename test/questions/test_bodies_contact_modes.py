@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Questions about several bodies: where the states come from, what is added to the load, what is refused.
+"""Questions about several bodies: the sources of their states, the applied wrenches, and rejected requests.
 
 That the modes are right is shown in `contact_modes/spatial/test_several_bodies.py`.
 """

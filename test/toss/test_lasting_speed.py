@@ -31,7 +31,7 @@ WALL = Surface(name="wall", p_WS_W=[0.4, 0, 0], normal_W=[-1, 0, 0], friction=0.
 
 
 def thrown(seed: int) -> BodyState:
-    """A brick in the air, turning, or level for seed 0, so that its corners strike at one instant."""
+    """A rotating brick in the air; with seed 0 it is level, and its corners strike at one instant."""
     chance = np.random.default_rng(seed)
     q = chance.standard_normal(4) if seed else np.array([0.0, 0.0, 0.0, 1.0])
     w = chance.normal(0.0, 5.0, 3) if seed else np.zeros(3)

@@ -31,7 +31,7 @@ from oracles import impact_increments, impact_swerving
 @pytest.mark.parametrize("law", RestitutionLaw)
 @pytest.mark.parametrize("seed", [0, 3, 6, 8, 14, 43, 113])
 def test_agrees_with_the_impulse_to_40_digits(seed: int, law: RestitutionLaw) -> None:
-    """The sliding direction turns fast or hardly, and sliding stops, reverses or goes on."""
+    """The sliding direction turns fast or hardly, and sliding stops, reverses or continues."""
     problem = random_problem(seed)
     problem["friction"] *= 0.2
     answer, normal = solve(problem, law), problem["n_W"]
