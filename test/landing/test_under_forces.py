@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from scipy.optimize import brentq
 from scipy.spatial.transform import Rotation
 
 from contact_dynamics.errors import InvalidFieldError
@@ -185,6 +186,21 @@ def test_a_motion_that_grows_without_bounds_is_refused_only_where_the_search_get
     assert first_contact(driven(0.0), CUBE_B, FLOOR, UP, horizon=100.0) is not None
     with pytest.raises(InvalidFieldError, match="seconds"):
         first_contact(driven(50.0), CUBE_B, FLOOR, UP, horizon=1.0)
+
+
+def test_falling_against_linear_drag() -> None:
+    """Height z_0 - v_e (t - tau (1 - exp(-t / tau))) with tau = m / c and v_e = g tau."""
+    drag = Drag(linear=0.8)
+    tau = BODY.mass / drag.linear
+    motion = forced_motion(BODY, start(3.05), gravity_W=DOWN_W, drag=drag)
+    found = first_contact(motion, CUBE_B, FLOOR, UP, horizon=5.0)
+    expected = brentq(
+        lambda t: 3.0 - 9.81 * tau * (t + tau * math.expm1(-t / tau)), 0.1, 5.0, xtol=1e-15, rtol=1e-14
+    )
+    assert found is not None
+    assert found.seconds == pytest.approx(expected, rel=1e-12)
+    assert found.v_WC_W[2] == pytest.approx(9.81 * tau * math.expm1(-expected / tau), rel=1e-12)
+    assert sorted(found.vertices) == [0, 2, 4, 6]
 
 
 def test_a_motion_from_another_state_is_an_error() -> None:
