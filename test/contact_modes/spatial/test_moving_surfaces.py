@@ -548,3 +548,40 @@ def test_friction_and_points_beyond_all_scales_warn_of_no_overflow() -> None:
     far = replace(problem, contacts=replace(problem.contacts, p_WC_W=points, frictions=MU))
     with warnings.catch_warnings(action="ignore", category=FarContactWarning):
         assert cd.contact_modes(far).verdict.name == "UNDECIDED"
+
+
+def test_a_box_that_is_put_on_a_belt_is_dragged_along() -> None:
+    _, (mode,) = modes_on(BOX, ON_FLOOR, surface("belt", v_WS_W=[0.0, 1.5, 0.0]))
+    assert mode.mode == "cccc"
+    np.testing.assert_allclose(mode.acceleration_W, [0, MU * G, 0], atol=1e-12)
+    np.testing.assert_allclose(mode.contact_accelerations_W, np.tile([0, MU * G, 0], (4, 1)), atol=1e-12)
+    carried = replace(ON_FLOOR, v_WB_W=np.array([0.0, 1.5, 0.0]))
+    _, (mode,) = modes_on(BOX, carried, surface("belt", v_WS_W=[0.0, 1.5, 0.0]))
+    assert mode.mode == "ffff"
+
+
+@pytest.mark.parametrize(("angle", "rate"), [(0.4, 0.0), (0.0, 3.0), (-0.3, 2.0), (0.9, 5.0)])
+def test_a_cup_on_a_tray_that_swings_freely_feels_no_force_along_it(angle: float, rate: float) -> None:
+    """The waiter's trick: a tray that swings from a pivot pulls on the cup along its normal only."""
+    length, height = 1.2, 0.1
+    cup = cd.Body.box((0.06, 0.06, height), 0.2)
+    alpha = -G / length * np.sin(angle)  # a pendulum whose length is that to the cup's centre of mass
+    turn = Rotation.from_euler("y", -angle)
+    pivot, w = np.array([0, 0, 2.0]), np.array([0, -rate, 0])
+    arm = turn.apply([0, 0, -length])
+    state = cd.BodyState(p_WB_W=pivot + arm, q_WB=turn.as_quat(), v_WB_W=np.cross(w, arm), w_WB_W=w)
+    tray = surface(
+        "tray",
+        p_WS_W=pivot + turn.apply([0, 0, -length - height / 2]),
+        normal_W=turn.apply(UP),
+        friction=1e-3,
+        v_WS_W=np.cross(w, turn.apply([0, 0, -length - height / 2])),
+        w_WS_W=w,
+        a_WS_W=np.cross(w, np.cross(w, turn.apply([0, 0, -length - height / 2])))
+        + np.cross([0, -alpha, 0], turn.apply([0, 0, -length - height / 2])),
+        alpha_WS_W=[0, -alpha, 0],
+    )
+    _, (mode,) = modes_on(cup, state, tray)
+    assert mode.mode == "ffff"
+    force = turn.inv().apply(mode.contact_forces_W.sum(axis=0))
+    np.testing.assert_allclose(force, [0, 0, 0.2 * (G * np.cos(angle) + rate**2 * length)], atol=1e-11)
