@@ -518,12 +518,13 @@ class World(Record):
 
     Attributes:
         bodies: Bodies, with different names.
-        surfaces: Infinite planes, and obstacles.
+        surfaces: Infinite planes, and obstacles, with different names.
         gravity_W: (3,), m/s^2, world axes. The default is (0, 0, -9.80665).
         surfaces_move: Whether any surface moves.
 
     Raises:
-        InvalidFieldError: two bodies have the same name, or gravity is not three finite numbers.
+        InvalidFieldError: two bodies or two surfaces have the same name, or gravity is not three finite
+            numbers.
 
     Examples:
         >>> import contact_dynamics as cd
@@ -555,9 +556,10 @@ class World(Record):
         object.__setattr__(self, "gravity_W", check_array("gravity_W", self.gravity_W, (3,)))
         moves = any(isinstance(each, Surface) and each.moves for each in self.surfaces)
         object.__setattr__(self, "surfaces_move", moves)
-        names = [body.name for body in self.bodies]
-        if len(set(names)) < len(names):
-            raise InvalidFieldError("bodies", names, "different names")
+        for field_name, named in (("bodies", self.bodies), ("surfaces", self.surfaces)):
+            names = [each.name for each in named]
+            if len(set(names)) < len(names):
+                raise InvalidFieldError(field_name, names, "different names")
 
     def after(self, seconds: float) -> World:
         """Return the world after a time, s, with the surfaces where they have moved to (`Surface.after`)."""

@@ -129,8 +129,13 @@ def test_an_unknown_body_is_refused_with_those_that_are_known() -> None:
     assert world.body("box") is BOX
     with pytest.raises(UnknownBodyError, match=r"must be one of the known bodies .'box'., got 'cat'"):
         world.body("cat")
-    with pytest.raises(InvalidFieldError, match="different names"):
+
+
+def test_bodies_and_surfaces_have_different_names() -> None:
+    with pytest.raises(InvalidFieldError, match=r"bodies must be different names, got \['box', 'box'\]"):
         World(bodies=(BOX, BOX))
+    with pytest.raises(InvalidFieldError, match=r"surfaces must be different names, got \['wall', 'wall'\]"):
+        World(surfaces=(WALL, surface("wall", (-1.0, 0.0, 0.0), (1.0, 0.0, 0.0))))
 
 
 @pytest.mark.parametrize(
