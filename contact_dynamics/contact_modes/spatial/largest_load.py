@@ -24,6 +24,7 @@ from contact_dynamics.contact.pairs import pair_jacobians
 from contact_dynamics.contact_modes.letters import STICKS, mode_in_words
 from contact_dynamics.contact_modes.result import BodiesMode, ModeVerdict, does_turn
 from contact_dynamics.contact_modes.spatial.answer import spatial_contact_modes
+from contact_dynamics.contact_modes.spatial.problem import load_at
 from contact_dynamics.contact_modes.spatial.response import (
     BodiesContactProblem,
     bodies_contact_modes,
@@ -124,7 +125,7 @@ class LargestLoad(Record):
 def largest_load(
     problem: SpatialContactProblem | BodiesContactProblem,
     *,
-    force_W: ArrayLike = (0.0, 0.0, 0.0),
+    force_W: ArrayLike | None = None,
     torque_W: ArrayLike = (0.0, 0.0, 0.0),
     at_W: ArrayLike | None = None,
     max_normal_forces: ArrayLike | None = None,
@@ -138,8 +139,8 @@ def largest_load(
         problem: The contact problem with the wrench without the load, such as the weight alone, under which
             rest is consistent. On surfaces that move this is rest relative to them. If it has several bodies,
             its surfaces must be at rest.
-        force_W: (3,), N, force of the load, world axes. For k bodies, (k, 3), here and below, or one vector
-            for all.
+        force_W: (3,), N, force of the load, world axes, or None for no force. For k bodies, (k, 3), here and
+            below, or one vector for all.
         torque_W: (3,), N m, torque of the load about the centre of mass, in addition to that of the force,
             world axes.
         at_W: (3,), m, point at which the force acts, world axes, or None for the centre of mass.
@@ -147,8 +148,8 @@ def largest_load(
             such as the force of a gripper. A limit may be infinite. By default, there are no limits.
 
     Raises:
-        InvalidFieldError: rest is not consistent without the load, or not within ``max_normal_forces``; or
-            the load is zero or not finite.
+        InvalidFieldError: rest is not consistent without the load, or not within ``max_normal_forces``; the
+            load is zero or not finite; or ``at_W`` is given without a force.
         NotSupportedError: surfaces do not move as one rigid body, or those of several bodies move.
 
     Examples:
@@ -170,10 +171,7 @@ def largest_load(
     else:
         problem = seen_in_space(problem, as_one="largest_load")
         places, checked = problem.state.p_WB_W, check_vector3
-    force, torque = checked("force_W", force_W), checked("torque_W", torque_W)
-    if at_W is not None:
-        torque = torque + np.cross(checked("at_W", at_W) - places, force)
-    load = np.hstack([force, torque]).ravel()
+    load = np.hstack(load_at(checked, places, force_W=force_W, torque_W=torque_W, at_W=at_W)).ravel()
     if not load.any():
         raise InvalidFieldError("force_W", "no load", "a load, or torque_W")
 

@@ -33,7 +33,7 @@ from contact_dynamics.contact.velocities import (
 from contact_dynamics.contact_modes.letters import SEPARATES
 from contact_dynamics.contact_modes.spatial.options import Touching
 from contact_dynamics.contact_modes.spatial.search import Search
-from contact_dynamics.errors import NoContactError, TooLargeError
+from contact_dynamics.errors import InvalidFieldError, NoContactError, TooLargeError
 from contact_dynamics.numerics.vectors import point_jacobians, tangents_towards
 from contact_dynamics.records import Record
 from contact_dynamics.rigid_body.body import inverse_mass_matrix
@@ -50,7 +50,7 @@ from contact_dynamics.validation import check_not_negative, check_vector3
 from contact_dynamics.validation_types import checks_types
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    from collections.abc import Callable, Iterable
 
     from numpy.typing import ArrayLike, NDArray
 
@@ -155,7 +155,7 @@ class SpatialContactProblem(Record):
         state: BodyState,
         world: World,
         *,
-        force_W: ArrayLike = (0.0, 0.0, 0.0),
+        force_W: ArrayLike | None = None,
         torque_W: ArrayLike = (0.0, 0.0, 0.0),
         at_W: ArrayLike | None = None,
         distance_tolerance: float = DISTANCE_TOLERANCE,
@@ -166,7 +166,7 @@ class SpatialContactProblem(Record):
             body: Body with a shape.
             state: State of the body. Contacts are detected as by `find_contacts`.
             world: Surfaces, which may move, and gravity.
-            force_W: (3,), N, force of the load, without gravity, world axes.
+            force_W: (3,), N, force of the load, without gravity, world axes, or None for no force.
             torque_W: (3,), N m, torque of the load about the centre of mass, in addition to that of the
                 force, world axes.
             at_W: (3,), m, point at which the force acts, world axes, or None for the centre of mass.
@@ -174,15 +174,14 @@ class SpatialContactProblem(Record):
 
         Raises:
             NoContactError: the body has no shape, or touches nothing.
-            InvalidFieldError: `find_contacts` rejects an argument, or a number is not finite.
+            InvalidFieldError: `find_contacts` rejects an argument, a number is not finite, or ``at_W`` is
+                given without a force.
         """
         contacts = find_contacts(body, state, world, distance_tolerance=distance_tolerance)
         if len(contacts) == 0:
             message = f"state: no point of {body.name!r} is within {distance_tolerance:g} m of a surface"
             raise NoContactError(message)
-        push, torque = check_vector3("force_W", force_W), check_vector3("torque_W", torque_W)
-        if at_W is not None:
-            torque = torque + np.cross(check_vector3("at_W", at_W) - state.p_WB_W, push)
+        push, torque = load_at(check_vector3, state.p_WB_W, force_W=force_W, torque_W=torque_W, at_W=at_W)
         weight = body.mass_properties.mass * world.gravity_W
         return cls(body=body, state=state, contacts=contacts, force_W=weight + push, torque_W=torque)
 
@@ -190,6 +189,28 @@ class SpatialContactProblem(Record):
     def wrench_W(self) -> FloatArray:
         """Return the applied force, N, and torque, N m, (6,)."""
         return np.concatenate([self.force_W, self.torque_W])
+
+
+def load_at(
+    checked: Callable[[str, ArrayLike], FloatArray],
+    p_WB_W: FloatArray,
+    *,
+    force_W: ArrayLike | None,
+    torque_W: ArrayLike,
+    at_W: ArrayLike | None,
+) -> tuple[FloatArray, FloatArray]:
+    """Return the force, N, and the torque, N m, about centres of mass, (..., 3), of a load at a point.
+
+    Raises:
+        InvalidFieldError: a number is not finite, or a point is given without a force.
+    """
+    force = checked("force_W", (0.0, 0.0, 0.0) if force_W is None else force_W)
+    torque = checked("torque_W", torque_W)
+    if at_W is None:
+        return force, torque
+    if force_W is None:
+        raise InvalidFieldError("at_W", at_W, "left out unless force_W is given")
+    return force, torque + np.cross(checked("at_W", at_W) - p_WB_W, force)
 
 
 @dataclass(slots=True, kw_only=True)

@@ -12,7 +12,7 @@ import pytest
 from contact_dynamics.contact.contact import ContactSet
 from contact_dynamics.contact_modes import SpatialContactProblem, contact_modes
 from contact_dynamics.contact_modes.result import applied_wrench
-from contact_dynamics.errors import NoContactError
+from contact_dynamics.errors import InvalidFieldError, NoContactError
 from contact_dynamics.rigid_body.body import BodyState, MassProperties
 from contact_dynamics.world import Body, Surface, World
 from contact_modes.evidence import spatial_problem
@@ -58,5 +58,9 @@ def test_a_push_at_a_point_and_the_weight_make_the_wrench() -> None:
         )
         np.testing.assert_allclose(problem.wrench_W, [push, 0, -200.0, 0, 0.2 * push, 0.1], atol=1e-12)
         assert [found.mode for found in contact_modes(problem).modes] == [mode]
+    # A point without a force would be ignored. A sweep of pushes may begin at zero.
+    with pytest.raises(InvalidFieldError, match=r"^at_W must be left out unless force_W is given"):
+        SpatialContactProblem.of(crate, state, world, torque_W=[0, 0, 0.1], at_W=[0.8, 0, 0.5])
+    SpatialContactProblem.of(crate, state, world, force_W=[0, 0, 0], at_W=[0.8, 0, 0.5])
     with pytest.raises(NoContactError, match=r"no point of 'crate' is within 1e-06 m of a surface"):
         SpatialContactProblem.of(crate, replace(state, p_WB_W=[0, 0, 0.31]), world)

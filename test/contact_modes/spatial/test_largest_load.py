@@ -74,6 +74,8 @@ def test_a_body_that_moves_and_a_load_that_is_none_are_errors() -> None:
         largest_load(replace(problem, force_W=[150.0, 0, -WEIGHT]), force_W=[1, 0, 0])
     with pytest.raises(InvalidFieldError, match=r"^force_W must be a load, or torque_W, got no load"):
         largest_load(problem, force_W=[0, 0, 0])
+    with pytest.raises(InvalidFieldError, match=r"^at_W must be left out unless force_W is given"):
+        largest_load(problem, torque_W=[0, 0, 1], at_W=[0, 0, 1])
 
 
 def test_two_fingers_may_let_go_before_they_must() -> None:
