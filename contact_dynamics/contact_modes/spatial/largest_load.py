@@ -44,6 +44,7 @@ from contact_dynamics.tolerances import (
     ONLY_REST_WITHIN,
     SAME_FACTOR,
     STRAIGHT_ARC,
+    SUM_ROUNDING,
 )
 from contact_dynamics.validation import check_array, check_at_rest, check_magnitude, check_vector3
 
@@ -149,7 +150,7 @@ def largest_load(
 
     Raises:
         InvalidFieldError: rest is not consistent without the load, or not within ``max_normal_forces``; the
-            load is zero or not finite; or ``at_W`` is given without a force.
+            load is below 1e-60 or not finite; or ``at_W`` is given without a force.
         NotSupportedError: surfaces do not move as one rigid body, or those of several bodies move.
 
     Examples:
@@ -165,16 +166,30 @@ def largest_load(
         78.5 N, then ('ssff',)
     """
     if isinstance(problem, BodiesContactProblem):
-        check_at_rest("problem.contacts", problem.contacts, "largest_load of several bodies")
         places = np.array([one.p_WB_W for one in problem.states])
         checked: Callable[[str, ArrayLike], FloatArray] = partial(for_each, n=len(problem.bodies))
     else:
-        problem = seen_in_space(problem, as_one="largest_load")
         places, checked = problem.state.p_WB_W, check_vector3
     load = np.hstack(load_at(checked, places, force_W=force_W, torque_W=torque_W, at_W=at_W)).ravel()
-    if not load.any():
-        raise InvalidFieldError("force_W", "no load", "a load, or torque_W")
+    size = float(np.abs(load).max())
+    if not size * LARGEST_NUMBER >= 1.0:
+        least = f"at least {1.0 / LARGEST_NUMBER:g} N in its largest component, or torque_W (N m)"
+        raise InvalidFieldError("force_W", f"{size:g}", least)
+    return _largest(problem, load, "largest_load", max_normal_forces)
 
+
+def _largest(
+    problem: SpatialContactProblem | BodiesContactProblem,
+    load: FloatArray,
+    call: str,
+    max_normal_forces: ArrayLike | None,
+    unit: str = "times the load",
+) -> LargestLoad:
+    """Return the largest factor of a load, (6 k,), of k bodies, which may be zero."""
+    if isinstance(problem, BodiesContactProblem):
+        check_at_rest("problem.contacts", problem.contacts, f"{call} of several bodies")
+    else:
+        problem = seen_in_space(problem, as_one=call)
     held = _Held.of(problem, max_normal_forces)
     start, added = held.limited(problem.wrench_W), held.free(load)
 
@@ -184,9 +199,10 @@ def largest_load(
     def nearer(plane: FloatArray, factor: float) -> float:  # noqa: ARG001  a line meets a plane once
         return -float(plane @ start) / float(plane @ added)
 
-    far = ANY_LOAD * max(1.0, float(np.linalg.norm(problem.wrench_W) / np.linalg.norm(load)))
+    size = float(np.linalg.norm(load))
+    far = ANY_LOAD * max(1.0, float(np.linalg.norm(problem.wrench_W)) / size) if size else 1.0
     _check_rests(problem, held)
-    return _followed(problem, held, wrench, _last_held(held, wrench, nearer, math.inf), far=far)
+    return _followed(problem, held, wrench, _last_held(held, wrench, nearer, math.inf), far=far, unit=unit)
 
 
 def largest_acceleration(
@@ -212,13 +228,9 @@ def largest_acceleration(
         InvalidFieldError: rest is not consistent without the motion, or the direction is zero or not finite.
     """
     direction = _direction("direction_W", direction_W)
-    if isinstance(problem, BodiesContactProblem):
-        load = np.array([-body.mass * direction for body in problem.bodies])
-    else:
-        problem = seen_in_space(problem, as_one="largest_acceleration")
-        load = -problem.body.mass * direction
-    found = largest_load(problem, force_W=load, max_normal_forces=max_normal_forces)
-    return replace(found, unit="m/s^2")
+    bodies = problem.bodies if isinstance(problem, BodiesContactProblem) else (problem.body,)
+    load = np.concatenate([_of_force(-body.mass * direction) for body in bodies])
+    return _largest(problem, load, "largest_acceleration", max_normal_forces, "m/s^2")
 
 
 def largest_spin(
@@ -237,30 +249,26 @@ def largest_spin(
         max_normal_forces: (n,) or one for all contacts, N, as in `largest_load`.
 
     Returns:
-        The largest angular velocity, rad/s.
+        The largest angular velocity, rad/s. It is infinite about a principal axis through the centre of mass,
+        because such a spin does not load the body.
 
     Raises:
-        InvalidFieldError: rest is not consistent without the motion, the axis is zero or not finite, or a
-            spin about it does not load the body.
+        InvalidFieldError: rest is not consistent without the motion, or the axis is zero or not finite.
     """
     check_at_rest("problem.contacts", problem.contacts, "largest_spin")
     axis = _direction("axis_W", axis_W)
-    arm = problem.state.p_WB_W - check_vector3("at_W", at_W)
-    outward = arm - (arm @ axis) * axis
-    body = problem.body
-    turning = -np.cross(axis, body.inertia_in_world(problem.state.R_WB) @ axis)
-    load = np.concatenate([body.mass * outward, turning])
-    size = float(np.linalg.norm(load))  # at 1 rad/s
-    if size == 0.0:
-        raise InvalidFieldError("axis_W, at_W", axis.tolist(), "an axis a spin about which loads the body")
-    force, torque = load[:3] / size, load[3:] / size
-    found = largest_load(problem, force_W=force, torque_W=torque, max_normal_forces=max_normal_forces)
-    return replace(
-        found,
-        factor=math.sqrt(found.factor / size),
-        only_rest=math.sqrt(found.only_rest / size),
-        unit="rad/s",
-    )
+    at, centre = check_vector3("at_W", at_W), problem.state.p_WB_W
+    outward = centre - at - ((centre - at) @ axis) * axis
+    momentum = problem.body.inertia_in_world(problem.state.R_WB) @ axis
+    turning = -np.cross(axis, momentum)
+    # Rounding would otherwise load a body that spins about its own principal axis.
+    outward = outward * (np.abs(outward).max() > SUM_ROUNDING * max(np.abs(at).max(), np.abs(centre).max()))
+    turning = turning * (np.abs(turning).max() > SUM_ROUNDING * np.abs(momentum).max())
+    load = np.concatenate([problem.body.mass * outward, turning])
+    size = float(np.linalg.norm(load)) or 1.0  # at 1 rad/s
+    found = _largest(problem, load / size, "largest_spin", max_normal_forces, "rad/s")
+    factor, only_rest = math.sqrt(found.factor / size), math.sqrt(found.only_rest / size)
+    return replace(found, factor=factor, only_rest=only_rest)
 
 
 def largest_tilt(

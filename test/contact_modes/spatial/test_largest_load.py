@@ -72,8 +72,13 @@ def test_a_body_that_moves_and_a_load_that_is_none_are_errors() -> None:
     problem = on_floor(0.5)
     with pytest.raises(InvalidFieldError, match=r"^problem must be one of a body that stays.*it slides"):
         largest_load(replace(problem, force_W=[150.0, 0, -WEIGHT]), force_W=[1, 0, 0])
-    with pytest.raises(InvalidFieldError, match=r"^force_W must be a load, or torque_W, got no load"):
+    with pytest.raises(InvalidFieldError, match=r"^force_W must be at least 1e-60 N .* or torque_W"):
         largest_load(problem, force_W=[0, 0, 0])
+    with pytest.raises(InvalidFieldError, match=r"^force_W must be at least 1e-60 N .*, got 1e-300"):
+        largest_load(problem, force_W=[1e-300, 0, 0])
+    tiny, one = largest_load(problem, force_W=[1e-59, 0, 0]), largest_load(problem, force_W=[1, 0, 0])
+    assert tiny.factor == pytest.approx(1e59 * one.factor, rel=1e-10)
+    assert tiny.modes_beyond == one.modes_beyond
     with pytest.raises(InvalidFieldError, match=r"^at_W must be left out unless force_W is given"):
         largest_load(problem, torque_W=[0, 0, 1], at_W=[0, 0, 1])
 
