@@ -97,6 +97,7 @@ def read_visualizer_parameters(source: ParameterSource) -> VisualizerParameters:
             rrd_path=given["rrd_path"],
             rrd_size=given["rrd_file_size"] * MEGABYTE,
             rrd_files=given["rrd_max_files"],
+            rrd_footer=False,  # the node may draw for weeks
             viewer=ViewerMode(chosen[0]) if chosen else ViewerMode.NONE,
             port=given["port"],
             url=given["connect"],

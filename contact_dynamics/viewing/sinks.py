@@ -80,6 +80,8 @@ class Sinks:
     # Bytes. Above this size the next file begins, with _1, _2 and so on in its name. 0 means a single file.
     rrd_size: int = 0
     rrd_files: int = 0  # number of newest files to keep. 0 means all.
+    # Whether files end with rerun's footer, an index that is kept in memory: 50 to 100 KB for each answer.
+    rrd_footer: bool = True
     viewer: ViewerMode = ViewerMode.NONE
     port: int = DEFAULT_PORT  # port of the viewer that is started, or that is served
     url: str = ""  # URL of the viewer to connect to, such as rerun+http://127.0.0.1:9876/proxy
@@ -171,6 +173,7 @@ class OpenRecording:
                 sinks.rrd_path,
                 size=sinks.rrd_size,
                 most=sinks.rrd_files,
+                footer=sinks.rrd_footer,
                 on_problem=self._on_problem,
             )
             names.append(sinks.rrd_path)
@@ -342,6 +345,7 @@ class RrdFiles:
         *,
         size: int,
         most: int,
+        footer: bool = True,
         on_problem: Callable[[str], object],
     ) -> None:
         """Draw a picture into a file, which is replaced, or raise `OSError`.
@@ -354,6 +358,7 @@ class RrdFiles:
         self._first = Path(path)
         self._size = size
         self._most = most
+        self._footer = footer
         self._on_problem = on_problem
         self.hold_all = True
         self._told = False
@@ -423,8 +428,7 @@ class RrdFiles:
                     file.truncate(0)
         self._count += 1
         self._written.append(path)
-        # The footer, an index of all drawings, would be kept in memory until the end: 50 KB per answer.
-        return rr.FileSink(path, write_footer=False)
+        return rr.FileSink(path, write_footer=self._footer)
 
 
 def _write_zeros(file: FileIO) -> None:

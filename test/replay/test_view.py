@@ -21,6 +21,8 @@ from running_server import ROOT
 
 with warnings.catch_warnings():
     warnings.simplefilter("ignore", DeprecationWarning)  # of Python 3.10, at rerun's import
+    from rerun.chunk import RrdReader
+
     from viewing.drawn import read_drawn
 
 
@@ -29,6 +31,7 @@ def test_a_log_is_drawn_without_ros(asked: Asked, tmp_path: Path) -> None:
     assert done.returncode == 0, done.stderr
     assert f"{sum(asked.counts.values())} answers" in done.stderr
     drawn = read_drawn(tmp_path / "drawn.rrd")
+    RrdReader(tmp_path / "drawn.rrd")  # it would warn about a missing footer
     stamps = sorted(message.publish_time_ns for message in BagReader(asked.log).messages({"/brick/odometry"}))
     assert drawn.stamps("/world/bodies/brick", "Transform3D:translation") == stamps
     landings = [

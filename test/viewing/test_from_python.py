@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from rerun.chunk import RrdReader
 
 import contact_dynamics as cd
 from contact_dynamics.constants import to_ns
@@ -34,6 +35,7 @@ def test_a_motion_and_an_answer_are_drawn_at_their_stamps(tmp_path: Path) -> Non
     np.testing.assert_allclose(heights, [state.p_WB_W[2] for state in motion], rtol=1e-6)  # float32
     path = next(entity for entity in drawn.entities if entity.startswith("/world/toss/brick/path"))
     assert drawn.stamps(path, "LineStrips3D:strips") == [motion[4].stamp_ns]
+    RrdReader(tmp_path / "toss.rrd")  # it would warn about a missing footer, which `rerun rrd verify` wants
 
 
 def test_modes_of_several_bodies_are_drawn_with_their_forces(tmp_path: Path) -> None:

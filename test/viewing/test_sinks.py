@@ -88,7 +88,7 @@ import rerun as rr
 def resident():
     return int(Path("/proc/self/statm").read_text().split()[1])
 
-recording = OpenRecording(Sinks(rrd_path=sys.argv[1]), on_problem=print)
+recording = OpenRecording(Sinks(rrd_path=sys.argv[1], rrd_footer=False), on_problem=print)
 pages = []
 for answer in range(4 * 60):
     set_time(recording.stream, 1_760_000_000_000_000_000 + answer)
