@@ -111,8 +111,9 @@ def check_definitions(path: Path, definitions: Mapping[str, str], version: str |
     if differing:
         raise NotSupportedError(
             f"{path}: fields of {', '.join(differing)} must be those of this version, got others: the "
-            f"log was written by another version of contact_dynamics ({version or 'not recorded'}); replay "
-            "it with that one"
+            f"server of the log was of another version of contact_dynamics ({version or 'not recorded'}), or "
+            "its interfaces were not built after their last change (make setup); replay the log with the "
+            "code that wrote it"
         )
 
 

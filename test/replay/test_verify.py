@@ -399,6 +399,8 @@ def test_a_log_of_other_definitions_is_refused_with_their_names(
     assert main([str(log)]) == 2
     told = capsys.readouterr().err
     assert "older.mcap: fields of PredictImpact must be those of this version, got others" in told
+    assert "another version of contact_dynamics (" in told
+    assert "or its interfaces were not built after their last change (make setup)" in told
     same = with_other_definitions(
         asked.log, tmp_path / "comment.mcap", b"# Where the body", b"# Where a body"
     )
