@@ -136,14 +136,14 @@ def _list_of_seconds(text: str) -> tuple[float, ...]:
 
 
 def _seconds(text: str) -> float:
-    """Return a number of milliseconds in s."""
+    """Return a number of milliseconds in s. Less than one was meant in seconds."""
     try:
-        value = float(text) / 1000.0
+        value = float(text)
     except ValueError:
         value = 0.0
-    if not 0.0 < value < float("inf"):
-        raise argparse.ArgumentTypeError(f"must be a number of milliseconds > 0, got {text!r}")
-    return value
+    if not 1.0 <= value < float("inf"):
+        raise argparse.ArgumentTypeError(f"must be a number of milliseconds >= 1, got {text!r}")
+    return value / 1000.0
 
 
 def _laws(text: str) -> tuple[Law, ...]:

@@ -71,6 +71,8 @@ def report(evaluation: Evaluation) -> str:
         *_gaps(evaluation),
     ]
     rows = [row for result in done for row in result.comparisons]
+    if events and not rows:
+        lines.append("no predictions: no event is preceded by states over one of the horizons")
     if any(row.distance is not None for row in rows):
         lines.append("inside: share of measured values inside the 50, 90 and 95 % prediction regions, %")
     for (kind, body, surface, several), grouped in groupby(

@@ -195,6 +195,8 @@ def test_what_cannot_be_read_or_written_is_said_before_the_work(
     ("arguments", "named"),
     [
         (["--horizons", "20,soon"], "got 'soon'"),
+        (["--horizons", "0.02"], "must be a number of milliseconds >= 1, got '0.02'"),
+        (["--fit-window", "0.1"], "must be a number of milliseconds >= 1, got '0.1'"),
         (["--laws", "hooke"], "must be one of poisson, newton, energetic, in time..., got 'hooke'"),
         (["--jobs", "0"], "must be a whole number >= 1..., got '0'"),
         ([], "at least one RECORDING is required"),
@@ -206,6 +208,13 @@ def test_a_wrong_argument_is_named(
     with pytest.raises(SystemExit):
         main([*([BRICK] if arguments else []), *arguments])
     assert says(capsys.readouterr().err, named)
+
+
+def test_horizons_longer_than_every_flight_are_reported(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main([BRICK, "--horizons", "20000"]) == 0
+    assert (
+        "no predictions: no event is preceded by states over one of the horizons" in capsys.readouterr().out
+    )
 
 
 @pytest.fixture(scope="module")
