@@ -93,14 +93,15 @@ def _add_what_is_asked(parser: argparse.ArgumentParser) -> None:
 
 def _add_who_does_it(parser: argparse.ArgumentParser) -> None:
     work = parser.add_argument_group("processes")
-    work.add_argument(
+    machines = work.add_mutually_exclusive_group()
+    machines.add_argument(
         "--jobs",
         type=_count,
         metavar="N",
         help="number of processes on this machine, which share recordings, or bodies and events (default: "
         "one per processor, and fewer for short recordings)",
     )
-    work.add_argument(
+    machines.add_argument(
         "--dask",
         default="",
         metavar="ADDRESS",

@@ -208,6 +208,7 @@ def _add_publish(parser: argparse.ArgumentParser) -> None:
         help="maximum time to wait for subscribers, s (default: 3)",
     )
     _add_span(parser)
+    _require(parser, "requests", "tolerance")
 
 
 def _add_tolerance(parser: argparse.ArgumentParser) -> None:
@@ -271,6 +272,21 @@ def _add_foreign(parser: argparse.ArgumentParser) -> None:
         metavar="S",
         help="length of the window of states to which a flight is fitted, s (default: 0, no fit)",
     )
+    _require(parser, "config", "topics")
+    _require(parser, "ask", "body", "every", "fit_window")
+
+
+def _require(parser: argparse.ArgumentParser, needed: str, *names: str) -> None:
+    """Make it an error to give options that are ignored without another one (`check_read`)."""
+    rows = [(name, parser.get_default(name), needed) for name in names]
+    parser.set_defaults(requires=[*(parser.get_default("requires") or ()), *rows])
+
+
+def check_read(parser: argparse.ArgumentParser, given: argparse.Namespace) -> None:
+    """End the process with an error if a given option would be ignored."""
+    for name, default, needed in getattr(given, "requires", ()):
+        if getattr(given, name) != default and not getattr(given, needed):
+            parser.error(f"--{name.replace('_', '-')} must be used with --{needed}")
 
 
 def _sentence(text: str) -> str:

@@ -27,6 +27,7 @@ from contact_dynamics.replay.arguments import (
     TABLE,
     VERIFY,
     VIEW,
+    check_read,
     replay_parser,
     stamps_as_logged,
 )
@@ -61,6 +62,7 @@ def main(arguments: list[str]) -> int:
     parser = replay_parser()
     ours, of_ros = _split(arguments)
     given = parser.parse_args(ours)
+    check_read(parser, given)
     if of_ros and given.mode != PUBLISH:
         parser.error(f"--ros-args must be used with {PUBLISH}, got {given.mode}")
     if given.mode == PUBLISH and given.rate != 1.0 and not stamps_as_logged(given):

@@ -199,6 +199,7 @@ def test_what_cannot_be_read_or_written_is_said_before_the_work(
         (["--fit-window", "0.1"], "must be a number of milliseconds >= 1, got '0.1'"),
         (["--laws", "hooke"], "must be one of poisson, newton, energetic, in time..., got 'hooke'"),
         (["--jobs", "0"], "must be a whole number >= 1..., got '0'"),
+        (["--jobs", "2", "--dask", "local:2"], "argument --dask: not allowed with argument --jobs"),
         ([], "at least one RECORDING is required"),
     ],
 )

@@ -273,7 +273,10 @@ def test_questions_come_as_often_as_they_are_asked_for(tmp_path: Path) -> None:
             ["--config", "server.yaml", "--topics", "cat=/tracker/cat"],
             "body.cat.odometry_topic must be about one of the names in bodies ['ball'], got body 'cat'",
         ),
-        (["--config", "server.yaml", "--body", "cat"], "body must be one of ['ball']..., got cat"),
+        (
+            ["--config", "server.yaml", "--ask", "modes", "--body", "cat"],
+            "body must be one of ['ball']..., got cat",
+        ),
         ([], "not a log of the server: no service of it in the log's types"),
     ],
 )
@@ -291,6 +294,24 @@ def test_what_is_wrong_is_named(
     (tmp_path / "broken.yaml").write_text("a: [")
     assert main(["table", "bag", *arguments]) == 2
     assert says(capsys.readouterr().err, told)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "told"),
+    [
+        (["table", "--topics", "ball=/tracker/ball"], "--topics must be used with --config"),
+        (["table", "--body", "ball"], "--body must be used with --ask"),
+        (["view", "--every", "0.5"], "--every must be used with --ask"),
+        (["view", "--fit-window", "0.1"], "--fit-window must be used with --ask"),
+        (["publish", "--tolerance", "1e-9"], "--tolerance must be used with --requests"),
+    ],
+)
+def test_an_option_that_would_be_ignored_is_an_error(
+    arguments: list[str], told: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    with pytest.raises(SystemExit):
+        main([*arguments, "log"])
+    assert told in capsys.readouterr().err
 
 
 def test_contact_modes_have_their_forces_and_margins(asked: Asked, tmp_path: Path) -> None:
