@@ -46,7 +46,7 @@ NOT_MEASURED: dict[
     ],  # test_calibrate, whose slow part counts
     "docs/cases.md": ["distance after 10 s", "half of (10 s)²"],  # what is asked
     "docs/contact-modes.md": ["At 60 N", "At 110 N", "floor at 75°", "at the 99.9 % confidence"],
-    "docs/contacts.md": ["0.001 m for motion capture", "at least 92 %"],  # test_contacts_of_shapes
+    "docs/contacts.md": ["0.001 m for motion capture"],
     "docs/faq.md": ["1e-6 m"],
     "docs/limits.md": [
         "at least 1e-6 m",
