@@ -96,7 +96,7 @@ NOT_MEASURED: dict[
     ],
     "docs/notation.md": ["−90°", "0.1 µs"],  # of a double at 1.8e9 s
     "docs/quick-start-ros.md": ["slide at 4.9 N"],  # half its weight
-    "docs/replay.md": ["the next 50 ms", "occurs within 50 ms", "advances by 0.1 s", "every 0.1 s"],
+    "docs/replay.md": ["the next 50 ms", "occurs within 50 ms", "every 0.1 s", "the preceding 0.1 s"],
     "docs/several-contacts.md": ["some milliseconds apart", "within 1 cm", "default 0.05 s"],
     "docs/tumbling.md": [
         "a rotation by 190° looks like one by 170° backwards",

@@ -19,11 +19,11 @@ VIEW: Final = "view"
 PUBLISH: Final = "publish"
 
 MODES: Final = {  # the modes of `replay`
-    VERIFY: "recompute every logged answer and compare it (the default mode)",
+    VERIFY: "recompute every logged response and compare it (the default mode)",
     INFO: "list topics, bodies, time span, and requests by service and status",
-    TABLE: "write one row per question: request, answer and later measurement",
-    VIEW: "draw states and answers in rerun, live or to a file",
-    PUBLISH: "publish the states over ROS, and optionally repeat the questions",
+    TABLE: "write one row per request, with its response and the later measurement",
+    VIEW: "draw states and responses in rerun, live or to a file",
+    PUBLISH: "publish the states over ROS, and optionally repeat the requests",
 }
 
 QUESTIONS: Final = ("landing", "impact", "modes")
@@ -91,7 +91,7 @@ class _WithDefaultMode(argparse.ArgumentParser):
 
 def _add_verify(parser: argparse.ArgumentParser) -> None:
     parser.epilog = (
-        "The exit code is 0 if all answers equal the logged ones, 1 if one differs or cannot be "
+        "The exit code is 0 if all responses equal the logged ones, 1 if one differs or cannot be "
         "read, and 2 if a log is not one of the server. Computation times are not compared."
     )
     parser.add_argument(
@@ -103,7 +103,7 @@ def _add_verify(parser: argparse.ArgumentParser) -> None:
     _add_tolerance(parser)
 
     group = parser.add_argument_group(
-        "other parameters", "Recompute the answers with other parameters, and list the largest differences."
+        "other parameters", "Recompute the responses with other parameters, and list the largest differences."
     )
     group.add_argument("--config", metavar="FILE", help="server parameters that replace the logged ones")
     group.add_argument(
@@ -166,9 +166,9 @@ def _add_view(parser: argparse.ArgumentParser) -> None:
 def _add_publish(parser: argparse.ArgumentParser) -> None:
     parser.epilog = (
         "The space bar pauses and resumes playback; while paused, the key '.' advances by 0.1 s. The exit "
-        "code is 0 if the log was published and, with --requests, every answer equals the logged one; 1 if "
-        "nothing was published, or an answer differs or is missing; 2 if there is no such log or part of it. "
-        "ROS arguments follow --ros-args."
+        "code is 0 if the log was published and, with --requests, every response equals the logged one; 1 if "
+        "nothing was published, or a response differs or is missing; 2 if there is no such log or part of "
+        "it. ROS arguments follow --ros-args."
     )
     parser.add_argument("log", metavar="LOG", help="a log of the server, or any recording with --all-topics")
     parser.add_argument(
@@ -184,7 +184,7 @@ def _add_publish(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--requests",
         action="store_true",
-        help="send each logged request at its time, and compare the answers with the logged ones",
+        help="send each logged request at its time, and compare the responses with the logged ones",
     )
     _add_tolerance(parser)
     parser.add_argument(

@@ -227,7 +227,7 @@ class _LogPublisher:
         """A description of the published messages and the requests."""
         lines = [f"{self._path}: {self._published} messages published"]
         if self._asks:
-            lines[0] += f", {self._asked} questions asked, {self._answered} answered"
+            lines[0] += f", {self._asked} requests sent, {self._answered} responses received"
         lines += [f"  {topic}: not published: {reason}" for topic, reason in self._skipped.items()]
         return "\n".join(lines)
 

@@ -65,9 +65,9 @@ COLUMNS: Final[dict[str, type]] = {
     "number": int,
     "state": int,
     "log_time_ns": int,
-    "asked_ns": int,
+    "request_ns": int,
     "body": str,
-    "question": str,
+    "request": str,
     "status": str,
     "message": str,
     "computation_time": float,
@@ -169,7 +169,7 @@ class Rows:
             return
         for cells in cells_of(answered.answer):
             yield row | cells
-            row["question"] = None
+            row["request"] = None
 
     def _of_monitor(self, event: Monitored) -> dict[str, Cell]:
         self._monitored += 1
@@ -192,9 +192,9 @@ class Rows:
             "service": answered.service_name,
             "number": answered.number,
             "log_time_ns": answered.log_time_ns,
-            "asked_ns": answered.asked_ns,
+            "request_ns": answered.asked_ns,
             "body": body if isinstance(body, str) else "",
-            "question": json.dumps(dict(answered.question)),
+            "request": json.dumps(dict(answered.question)),
             "status": answered.status,
             "message": answered.message,
             "computation_time": answered.computation_time,

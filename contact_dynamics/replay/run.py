@@ -134,8 +134,8 @@ def _table(given: argparse.Namespace) -> int:
                 events = _events(Path(name), given)
                 for count, row in enumerate(Rows(events, log=name), start=1):
                     write(row)
-                    asked_ns = row["log_time_ns"]
-                    progress.tell(asked_ns if isinstance(asked_ns, int) else 0, f"{count} rows")
+                    log_time_ns = row["log_time_ns"]
+                    progress.tell(log_time_ns if isinstance(log_time_ns, int) else 0, f"{count} rows")
             except (ContactDynamicsError, OSError) as error:
                 if len(given.logs) == 1:
                     raise
@@ -171,7 +171,7 @@ def _view(given: argparse.Namespace) -> int:
         signal.signal(signal.SIGTERM, signal.default_int_handler)
     drawn = draw(str(path), events, sinks, surface_side=given.surface_side, progress=progress)
     progress.end()
-    _tell(str(path), f"drew {drawn.states} states and {drawn.answers} answers", events)
+    _tell(str(path), f"drew {drawn.states} states and {drawn.answers} responses", events)
     if not drawn.took_all:
         sys.stdout.flush()
         os._exit(DIFFERENT)  # a normal exit would wait for a viewer that hangs

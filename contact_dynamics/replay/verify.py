@@ -271,7 +271,7 @@ def verify_log(
                 states += 1
                 server.receive(each)
                 if on_progress is not None:
-                    on_progress(each.log_time_ns, f"{states} states, {questions} questions")
+                    on_progress(each.log_time_ns, f"{states} states, {questions} requests")
         found.damage = log.damage
         found.lost_bytes = sum(loss.end - loss.begin for loss in log.losses)
     return found
@@ -284,7 +284,7 @@ def _ask(call: ServiceCall, server: ServerAgain, found: Verification) -> None:
         tally.unanswered += 1
         return
     if call.request_event is None:
-        _unreadable(found, tally, "the log has an answer without its question")
+        _unreadable(found, tally, "the log contains a response without its request")
         return
     try:
         request = part_of(call.request_event, "request")
@@ -365,7 +365,7 @@ def report(found: Verification) -> str:
     told = sum(1 + other.repeated for other in found.others)
     untold = sum(tally.different for tally in found.services.values()) - told
     if untold > 0:
-        lines.append(f"  and {untold} more questions with smaller differences")
+        lines.append(f"  and {untold} more requests with smaller differences")
     lines += _gaps(found)
     return "\n".join(lines)
 
@@ -375,7 +375,7 @@ def summary(results: Sequence[tuple[str, str]]) -> str:
     width = max(len(name) for name, _ in results)
     good = sum(result == AS_LOGGED for _, result in results)
     lines = [f"  {name:{width}}  {result}" for name, result in results]
-    return "\n".join([f"{good} of {len(results)} logs are answered as logged", *lines])
+    return "\n".join([f"{good} of {len(results)} logs have unchanged responses", *lines])
 
 
 def utc(stamp_ns: int) -> str:
@@ -386,9 +386,9 @@ def utc(stamp_ns: int) -> str:
 
 def _table(found: Verification) -> list[str]:
     if not found.services:
-        return ["  no questions"]
+        return ["  no requests"]
     within = f"within {found.tolerance:g}" if found.tolerance > 0.0 else ""
-    heads = ["questions", "identical", *([within] if within else []), "different"]
+    heads = ["requests", "identical", *([within] if within else []), "different"]
     width = max(len(name) for name in found.services)
     lines = [f"  {'service':{width}}  {'  '.join(heads)}"]
     for name, tally in found.services.items():
@@ -401,9 +401,9 @@ def _table(found: Verification) -> list[str]:
 def _other(other: OtherAnswer) -> list[str]:
     fields = [f"    {in_words(each)}" for each in other.differences]
     if other.repeated:
-        fields.append(f"    the same in {other.repeated} further question{'s'[: other.repeated > 1]}")
-    asked = f"asked {utc(other.asked_ns)} (log_time {other.asked_ns})"
-    return [f"  {other.service}, question {other.number}, {asked}:", *fields]
+        fields.append(f"    the same in {other.repeated} further request{'s'[: other.repeated > 1]}")
+    received = f"received {utc(other.asked_ns)} (log_time {other.asked_ns})"
+    return [f"  {other.service}, request {other.number}, {received}:", *fields]
 
 
 def _gaps(found: Verification) -> list[str]:
@@ -411,19 +411,19 @@ def _gaps(found: Verification) -> list[str]:
     other_state = sum(tally.other_state for tally in found.services.values())
     if other_state:
         lines.append(
-            f"  {other_state} answers used other states than the logged ones, or none, and are not compared: "
-            "DDS does not preserve the order of a state and a question"
+            f"  {other_state} responses used other states than the logged ones, and are not compared: "
+            "DDS does not preserve the order of a state and a request"
         )
     unanswered = sum(tally.unanswered for tally in found.services.values())
     unreadable = sum(tally.unreadable for tally in found.services.values())
     if unanswered:
-        lines.append(f"  not repeated, because the log contains no answer, or BUSY or TIMEOUT: {unanswered}")
+        lines.append(f"  not repeated (no logged response, or BUSY or TIMEOUT): {unanswered}")
     if unreadable:
         lines.append(f"  {unreadable} calls could not be read; the first: {found.unreadable}")
     if found.damage is not None:
         lines.append(f"  {found.damage}")
     if found.lost_bytes:
         lines.append(
-            "  what was read is compared above; an answer can differ where a state that it used is lost"
+            "  the readable part is compared above; a response can differ if a state that it used is lost"
         )
     return lines

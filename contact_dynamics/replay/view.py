@@ -58,7 +58,7 @@ def draw(name: str, events: Events, sinks: Sinks, *, surface_side: float, progre
                 progress.tell(event.state.stamp_ns, "drawing")
         drawing.finish(look_at_all=sinks.viewer is ViewerMode.NONE)
         if is_served and not recording.viewer_failed:
-            _tell_server(name, f"all {drawing.states} states and {drawing.answers} answers are drawn")
+            _tell_server(name, f"all {drawing.states} states and {drawing.answers} responses are drawn")
             _serve(recording)
     finally:  # also if the user stops it, so that the picture so far can be opened
         took_all = recording.close()
@@ -123,8 +123,8 @@ class _Drawing:
         answer, now_ns = answered.answer, self._waiting.newest_stamp_ns() or answered.asked_ns
         remark, seconds = answered.message, answered.computation_time
         if answer is None:
-            refused = f"refused ({answered.status}): {remark}"
-            self._picture.tell(answered.service.kind, refused, stamp_ns=now_ns, is_error=True)
+            rejected = f"rejected ({answered.status}): {remark}"
+            self._picture.tell(answered.service.kind, rejected, stamp_ns=now_ns, is_error=True)
         else:
             self._waiting.draw_before(answer)
             self._picture.show(answer, now_ns=now_ns, remark=remark, computation_time=seconds)
@@ -135,4 +135,4 @@ class _Drawing:
         except Exception as error:  # noqa: BLE001  what one answer has must not cost the picture of the rest
             if kind not in self._told:
                 self._told.add(kind)
-                _tell_problem(f"cannot draw {kind}; not told again: {type(error).__name__}: {error}")
+                _tell_problem(f"cannot draw {kind}; not reported again: {type(error).__name__}: {error}")

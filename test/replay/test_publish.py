@@ -49,7 +49,7 @@ def test_the_time_of_the_log_gives_its_states_and_its_answers(asked: Asked, tmp_
         done = published(asked.log, "--clock", "--requests", "--wait", str(PATIENCE_S))
     count = sum(asked.counts.values())
     assert done.returncode == 0, done.stdout + done.stderr
-    assert f"{count} questions asked, {count} answered" in done.stderr
+    assert f"{count} requests sent, {count} responses received" in done.stderr
     assert compared(done.stdout)["predict_contact_mode"] == (asked.counts["PredictContactMode"],) * 2
     (log,) = (tmp_path / "logs").iterdir()
     for topic in STATES:
@@ -88,7 +88,7 @@ def test_other_answers_are_told_and_counted(asked: Asked, tmp_path: Path) -> Non
     questions, equal = compared(done.stdout)["predict_contact_mode"]
     assert questions == asked.counts["PredictContactMode"]
     assert equal < questions
-    assert "/contact_dynamics/predict_contact_mode, question " in done.stdout
+    assert "/contact_dynamics/predict_contact_mode, request " in done.stdout
     assert compared(done.stdout)["predict_tumbling_batch"][0] == asked.counts["PredictTumblingBatch"]
     assert len(set(compared(done.stdout)["predict_tumbling_batch"])) == 1
 

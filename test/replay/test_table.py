@@ -45,19 +45,19 @@ def test_a_row_for_each_question_of_a_log(asked: Asked, tmp_path: Path) -> None:
         message.publish_time_ns
         for message in BagReader(asked.log).messages({"/brick/odometry", "/ball/pose"})
     }
-    landings = [row for row in rows if '"sampling": 3' in row["question"]]
+    landings = [row for row in rows if '"sampling": 3' in row["request"]]
     assert landings
     assert {row["summary"] for row in landings} == {"contact"}
     assert {row["surface"] for row in landings} == {"floor"}
     assert {int(row["state_stamp_ns"]) for row in landings} <= published
-    fitted = [row for row in rows if "fit_window" in row["question"]]
+    fitted = [row for row in rows if "fit_window" in row["request"]]
     assert all(row["status"] != "OK" or int(row["states_fitted"]) > 0 for row in fitted)
     cats = [row for row in rows if row["body"].startswith("cat")]
     assert {row["status"] for row in cats} == {"UNKNOWN_BODY"}
     assert rows[-1]["status"] == "STALE_STATE"
     for row in rows:
         is_later = row["state"] not in {"", "0"}  # the first one has the question of a batch
-        asked_about = {} if is_later else json.loads(row["question"])
+        asked_about = {} if is_later else json.loads(row["request"])
         names = [asked_about.get("body_name", "")]
         if row["service"] == "predict_bodies_contact_mode":
             names = [state["body_name"] for state in asked_about["states"]]
@@ -90,10 +90,10 @@ def test_a_question_about_many_states_has_a_row_for_each(asked: Asked, tmp_path:
         )
     assert [row["summary"] for row in impacts[:MANY]][-1] == "separates"
     assert "separates" not in {row["summary"] for row in impacts[: MANY - 1]}
-    first = json.loads(impacts[0]["question"])
+    first = json.loads(impacts[0]["request"])
     assert first["states"]["positions"][3:6] == [0.5, 0.0, 1.0]
-    assert json.loads(flights[0]["question"])["times"] == [0.1, 0.2, 0.3]
-    assert {row["question"] for rows in (impacts, flights) for row in rows if row["state"] != "0"} == {""}
+    assert json.loads(flights[0]["request"])["times"] == [0.1, 0.2, 0.3]
+    assert {row["request"] for rows in (impacts, flights) for row in rows if row["state"] != "0"} == {""}
     assert {row["summary"] for row in flights} == {"flight"}
 
 
@@ -116,11 +116,11 @@ def test_a_question_about_many_candidates_has_a_row_for_each(asked: Asked, tmp_p
             assert row["summary"] == (f"{name}: {', '.join(expected)}" if expected else name)
             assert (row["body"], row["status"], row["states_fitted"]) == ("brick", "OK", "0")
     pushed, standing = rows[:MANY], rows[MANY : 2 * MANY]
-    assert json.loads(pushed[0]["question"])["forces"] == [0.0, 0.0, 0.0, 0.1, 0.0, 0.0, 9.0, 0.0, 0.0]
+    assert json.loads(pushed[0]["request"])["forces"] == [0.0, 0.0, 0.0, 0.1, 0.0, 0.0, 9.0, 0.0, 0.0]
     assert len({row["summary"] for row in pushed}) > 1
     assert pushed[0]["summary"] == "unique: ffff (every contact stays fixed)"
     assert [row["surface"] for row in standing] == ["floor", "table", "ramp"]
-    assert json.loads(standing[0]["question"])["contact_counts"] == [2, 1, 1]
+    assert json.loads(standing[0]["request"])["contact_counts"] == [2, 1, 1]
 
 
 def test_parquet_has_the_cells_of_csv_and_needs_no_ros(asked: Asked, tmp_path: Path) -> None:
@@ -130,7 +130,7 @@ def test_parquet_has_the_cells_of_csv_and_needs_no_ros(asked: Asked, tmp_path: P
     table = pq.read_table(tmp_path / "table.parquet")
     assert table.column_names == list(COLUMNS)
     rows = rows_of(tmp_path / "table.csv")
-    for name in ("asked_ns", "service", "status", "summary", "predicted_x", "state_stamp_ns"):
+    for name in ("request_ns", "service", "status", "summary", "predicted_x", "state_stamp_ns"):
         cells = ["" if cell is None else str(cell) for cell in table.column(name).to_pylist()]
         assert cells == [row[name] for row in rows], name
 
@@ -236,7 +236,7 @@ def test_what_would_it_have_said(tmp_path: Path, storage: StoragePlugin, mode: C
     seen = [row for row in landings + impacts if row["measured_ns"]]
     assert len(seen) == 12  # those before the strike; what comes after the next one is not recorded
     for row in seen:
-        assert int(row["asked_ns"]) - START_NS < int(0.65e9)
+        assert int(row["request_ns"]) - START_NS < int(0.65e9)
         for kind in ("position", "angle", "velocity", "spin"):
             assert float(row[f"{kind}_error"]) < EXACT, (row["service"], kind)
 
@@ -250,7 +250,7 @@ def test_questions_come_as_often_as_they_are_asked_for(tmp_path: Path) -> None:
     assert main(["table", *common, "--every", "0"]) == 0
     assert len(rows_of(out)) == int(0.95 * RATE) - 2
     assert main(["table", *common, "--every", "0.25"]) == 0
-    gaps = np.diff([int(row["asked_ns"]) for row in rows_of(out)])
+    gaps = np.diff([int(row["request_ns"]) for row in rows_of(out)])
     assert (gaps >= 250_000_000).all()
     assert (gaps < 250_000_000 + 3 * 1_000_000_000 // RATE).all()
 

@@ -149,7 +149,7 @@ def test_a_changed_constant_is_found_with_question_and_field(
     assert other.asked_ns in request_times
     assert main([str(log)]) == 1
     printed = capsys.readouterr().out
-    assert f"question {other.number}, asked" in printed
+    assert f"request {other.number}, received" in printed
     for each in other.differences:
         assert re.match(r"(number of )?((refused_)?modes|refusal\w+|contacts.frictions)|verdict", each.field)
         assert f"{each.field}: logged " in printed
@@ -463,5 +463,5 @@ def test_differences_are_told_by_what_changes_most(tmp_path: Path) -> None:
     for other in (recomputed, recomputed, longer, recomputed):
         note_difference(found, "/predict", differences(logged, other), asked_ns=1)
     assert [other.repeated for other in found.others] == [2, 0]
-    assert "    the same in 2 further questions\n" in report(found)
-    assert "more questions" not in report(found)
+    assert "    the same in 2 further requests\n" in report(found)
+    assert "more requests" not in report(found)

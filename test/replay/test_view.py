@@ -29,7 +29,7 @@ with warnings.catch_warnings():
 def test_a_log_is_drawn_without_ros(asked: Asked, tmp_path: Path) -> None:
     done = without_ros("view", asked.log, "--rrd", tmp_path / "drawn.rrd")
     assert done.returncode == 0, done.stderr
-    assert f"{sum(asked.counts.values())} answers" in done.stderr
+    assert f"{sum(asked.counts.values())} responses" in done.stderr
     drawn = read_drawn(tmp_path / "drawn.rrd")
     RrdReader(tmp_path / "drawn.rrd")  # it would warn about a missing footer
     stamps = sorted(message.publish_time_ns for message in BagReader(asked.log).messages({"/brick/odometry"}))
@@ -113,7 +113,7 @@ def test_what_is_served_stays_until_it_is_stopped(tmp_path: Path) -> None:
         assert started.stderr is not None
         line = started.stderr.readline()
         assert f"served at rerun+http://127.0.0.1:{port}/proxy; press Ctrl-C to stop" in line
-        assert "all 188 states and 0 answers are drawn" in started.stderr.readline()
+        assert "all 188 states and 0 responses are drawn" in started.stderr.readline()
         with pytest.raises(subprocess.TimeoutExpired):
             started.wait(1.0)
         socket.create_connection(("127.0.0.1", port), timeout=10.0).close()
