@@ -77,6 +77,17 @@ class BodySources:
     sources: tuple[ConfiguredSource, ...]
 
 
+_NOT_TURNED: Final = [0.0, 0.0, 0.0, 1.0]
+_UP: Final = [0.0, 0.0, 1.0]
+
+
+def _check_unread(condition: str, **fields: tuple[object, object]) -> None:
+    """Raise `InvalidFieldError` for a field, given with its default, that would be ignored."""
+    for name, (value, default) in fields.items():
+        if value != default:
+            raise InvalidFieldError(name, value, f"left out {condition}")
+
+
 def read_body(source: ParameterSource, name: str) -> tuple[Body, BodySources]:
     """Return a body and the sources of its states.
 
@@ -176,6 +187,13 @@ def _read_sources(source: ParameterSource, key: str) -> tuple[ConfiguredSource, 
 def _body(name: str, mass: float, inertia: list[float], offset: list[float], shape: ShapeParameters) -> Body:
     center_of_mass = check_array("center_of_mass", offset, (3,))
     shape_F = shape.shape_F()
+    if shape_F.is_empty:
+        _check_unread(
+            "unless there is a shape",
+            rounding=(shape.rounding, 0.0),
+            shape_position=(shape.position, [0.0, 0.0, 0.0]),
+            shape_orientation=(shape.orientation, _NOT_TURNED),
+        )
     if inertia == [0.0]:
         uniform = shape.uniform(check_positive("mass", mass))
         if center_of_mass.any():
@@ -210,7 +228,7 @@ def _read_shape(source: ParameterSource, key: str) -> ShapeParameters:
         ),
         orientation=source.value(
             f"{key}.shape_orientation",
-            [0.0, 0.0, 0.0, 1.0],
+            _NOT_TURNED,
             "Orientation of the shape in the body's frame: unit quaternion x, y, z, w.",
         ),
     )
@@ -239,6 +257,9 @@ def read_surface(
 
     def build() -> Surface | Obstacle | CarriedSurface:
         if not carrier:
+            _check_unread(
+                "unless a body carries the plane", acceleration_window=(window, ACCELERATION_WINDOW)
+            )
             return surface
         if carrier not in among:
             raise InvalidFieldError("body", carrier, f"one of the bodies {list(among)}, or empty")
@@ -256,7 +277,7 @@ def _read_surface(source: ParameterSource, name: str) -> Surface | Obstacle:
     )
     normal = source.value(
         f"{key}.normal",
-        [0.0, 0.0, 1.0],
+        _UP,
         "Unit normal of the plane, towards its free side, world axes: x, y, z.",
     )
     shape = ShapeParameters(
@@ -272,7 +293,7 @@ def _read_surface(source: ParameterSource, name: str) -> Surface | Obstacle:
         position=point,
         orientation=source.value(
             f"{key}.orientation",
-            [0.0, 0.0, 0.0, 1.0],
+            _NOT_TURNED,
             "Orientation of the box or the corners: unit quaternion x, y, z, w.",
         ),
         pose_names=("point", "orientation"),
@@ -312,7 +333,14 @@ def _read_surface(source: ParameterSource, name: str) -> Surface | Obstacle:
             for field, motion in (("velocity", any(velocity)), ("angular_velocity", rate)):
                 if motion:
                     raise InvalidFieldError(field, "numbers", "zero for an obstacle, which is at rest")
+            _check_unread(
+                "for an obstacle",
+                normal=(normal, _UP),
+                lasting_factor=(lasting_factor, 1.0),
+                lasting_speed=(lasting_speed, 0.0),
+            )
             return Obstacle(name=name, vertices_W=solid.vertices, friction=friction, restitution=restitution)
+        _check_unread("unless there is a box or vertices", orientation=(shape.orientation, _NOT_TURNED))
         check_place("point", check_array("point", point, (3,)))
         check_vector("velocity", check_array("velocity", velocity, (3,)))
         check_vector("angular_velocity", check_array("angular_velocity", [rate], (1,)))

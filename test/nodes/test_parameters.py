@@ -297,6 +297,30 @@ WRONG = [
         floor(box=[1.0] * 3, angular_velocity=2.0),
         "surface.floor.angular_velocity must be zero for an obstacle",
     ),
+    (
+        brick(box=[0.0], rounding=0.01),
+        "body.brick.rounding must be left out unless there is a shape, got 0.01",
+    ),
+    (
+        brick(box=[0.0], shape_position=[0.0, 0.0, 0.1]),
+        "body.brick.shape_position must be left out unless there is a shape",
+    ),
+    (
+        floor(orientation=[0.0, 1.0, 0.0, 0.0]),
+        "surface.floor.orientation must be left out unless there is a box or vertices",
+    ),
+    (
+        floor(acceleration_window=0.2),
+        "surface.floor.acceleration_window must be left out unless a body carries the plane, got 0.2",
+    ),
+    (
+        floor(box=[1.0] * 3, normal=[1.0, 0.0, 0.0]),
+        "surface.floor.normal must be left out for an obstacle",
+    ),
+    (
+        floor(box=[1.0] * 3, lasting_speed=0.5),
+        "surface.floor.lasting_speed must be left out for an obstacle, got 0.5",
+    ),
     (floor(lasting_factor=-1.0), "surface.floor.lasting_factor must be ..., got -1.0"),
     (floor(lasting_factor=1e20), "surface.floor.lasting_factor must be at..., got 1e+20"),
     (floor(lasting_speed=-0.1), "surface.floor.lasting_speed must be >= 0..., got -0.1"),
