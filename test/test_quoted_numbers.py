@@ -35,8 +35,8 @@ NOT_MEASURED: dict[
         "1e-2 rad in",
         "contain 50 % and 90 % of",
     ],
-    "docs/diagnostics.md": ["active for 3 s", "answers are sent for 10 s"],
-    "docs/performance.md": ["100 s at 1 kHz", "RK4 at 1 ms"],
+    "docs/diagnostics.md": ["or for 3 s", "For 10 s, responses"],
+    "docs/performance.md": ["poses at 1 kHz", "after 100 s", "step 1 ms"],
     "docs/architecture.md": ["it takes 0.1 s"],  # how long DDS waits, which is set there
     "docs/calibrate.md": [
         "the true values in 85 to 95 %",
