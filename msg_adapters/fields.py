@@ -34,47 +34,30 @@ if TYPE_CHECKING:
 
 
 class Frame(NamedTuple):
-    """What the poses of a message refer to.
+    """The frames of the poses in a message, and the context of their conversion."""
 
-    Attributes:
-        p_FB_F: (3,), m, the body's centre of mass in its published frame.
-        world_frame: The name of the world frame, for writing.
-        body_name: The name of the body.
-        stamp_ns: The time from which trajectories count, ns, for writing.
-        answer: The answer that all is part of, for writing.
-        world: The bodies whose centres of mass are known, for reading.
-    """
-
-    p_FB_F: FloatArray = np.zeros(3)
-    world_frame: str = ""
-    body_name: str = ""
-    stamp_ns: int = 0
-    answer: object = None
-    world: World | None = None
+    p_FB_F: FloatArray = np.zeros(3)  # (3,), m, the body's centre of mass in its published frame
+    world_frame: str = ""  # the name of the world frame, for writing
+    body_name: str = ""  # the name of the body
+    stamp_ns: int = 0  # the time from which trajectories count, ns, for writing
+    answer: object = None  # the answer that contains the record, for writing
+    world: World | None = None  # the bodies whose centres of mass are known, for reading
 
 
 class Kind(NamedTuple):
-    """How an attribute and a field become each other, in a way that depends on more than the two.
+    """A conversion between an attribute and a field that depends on the frame or on other fields."""
 
-    Attributes:
-        write: Writes into a message, with the field, the attribute and the frame as arguments.
-        read: Returns the attribute of a message, with the field and the frame as arguments.
-    """
-
+    # Writes into a message, with the field, the attribute and the frame as arguments
     write: Callable[..., object]
+    # Returns the attribute of a message, with the field and the frame as arguments
     read: Callable[..., object]
 
 
 class Converted(NamedTuple):
-    """How an attribute and a field become each other by themselves. Without functions they are the same.
+    """A conversion between an attribute and a field. Without functions both are the same."""
 
-    Attributes:
-        to_field: Returns the field of an attribute.
-        from_field: Returns the attribute of a field.
-    """
-
-    to_field: Callable[..., object] | None = None
-    from_field: Callable[..., object] | None = None
+    to_field: Callable[..., object] | None = None  # converts an attribute to its field
+    from_field: Callable[..., object] | None = None  # converts a field to its attribute
 
 
 def _floats(numbers: Sequence[float]) -> FloatArray:
@@ -198,17 +181,11 @@ def or_none(kind: Kind) -> Kind:
 
 
 class Row(NamedTuple):
-    """A row of a table.
+    """A row of a table."""
 
-    Attributes:
-        name: The attribute of the record.
-        field: The field of the message. A kind of several fields has its own names of them.
-        kind: The kind of both.
-    """
-
-    name: str
-    field: str
-    kind: Kind | Converted = SAME
+    name: str  # the attribute of the record
+    field: str  # The field of the message. A kind of several fields names them itself.
+    kind: Kind | Converted = SAME  # the conversion
 
 
 Rec = TypeVar("Rec")

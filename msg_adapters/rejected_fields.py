@@ -33,18 +33,12 @@ Value = TypeVar("Value")
 
 
 class When(NamedTuple):
-    """A condition on one field of a request.
+    """A condition on one field of a request."""
 
-    Attributes:
-        field: The field, which may be one of a message in the request.
-        constants: Names of constants of the request, one of which the field has. Without any, the field is
-            not zero.
-        is_zero: Whether the field must be zero instead.
-    """
-
-    field: str
+    field: str  # the field, which may be one of a message in the request
+    # Names of constants of the request, one of which the field has. Without any, the field is not zero.
     constants: tuple[str, ...] = ()
-    is_zero: bool = False
+    is_zero: bool = False  # whether the field must be zero instead
 
     def is_met(self, request: object) -> bool:
         """Return whether a request meets the condition."""

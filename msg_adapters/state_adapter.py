@@ -75,17 +75,12 @@ def in_world(known: KnownState, frame: str, settings: SourceSettings) -> KnownSt
 
 
 class StateRows(NamedTuple):
-    """The states of n messages.
+    """The states of n messages."""
 
-    Attributes:
-        stamps_ns: (n,), ns.
-        numbers: (n, 13): position, quaternion, linear and angular velocity, as in `BodyState`.
-        are_all: (n,), whether a row is all that the reader makes of the message. It is false where that has a
-            covariance too, and where the reader raises an error.
-    """
-
-    stamps_ns: NDArray[np.int64]
-    numbers: FloatArray
+    stamps_ns: NDArray[np.int64]  # (n,), ns
+    numbers: FloatArray  # (n, 13): position, quaternion, linear and angular velocity, as in `BodyState`
+    # (n,), whether a row is all that the reader makes of the message. It is false where that has a covariance
+    # too, and where the reader raises an error.
     are_all: NDArray[np.bool_]
 
 

@@ -37,15 +37,10 @@ class TFMessage(Protocol):
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class FramePose:
-    """Where a frame is in another one.
+    """The pose of a frame in another one."""
 
-    Attributes:
-        p: (3,), m, its origin.
-        q: (4,), its orientation, unit, x y z w.
-    """
-
-    p: FloatArray
-    q: FloatArray
+    p: FloatArray  # (3,), m, its origin
+    q: FloatArray  # (4,), its orientation, unit, x y z w
 
     @property
     def R(self) -> FloatArray:

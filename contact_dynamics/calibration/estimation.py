@@ -44,23 +44,14 @@ FRICTIONS: Final = (1.0, 0.4)  # shares of the configured friction from which th
 
 @dataclass(frozen=True, slots=True, kw_only=True, repr=False)
 class Spread(Record):
-    """Scatter of the residuals beyond the measurement noise.
+    """Scatter of the residuals beyond the measurement noise."""
 
-    Attributes:
-        velocity: m/s, of each component of a velocity after a strike: the law's own spread.
-        spin: rad/s, of each component of an angular velocity after a strike.
-        strike_height: m, of the height of a corner that strikes.
-        rest_height: m, of the height of a corner at rest.
-        flight: Factor on the noise of positions, for the mass centre from first flights.
-        turn: Factor on the noise of orientations, for the ratios of moments from first flights.
-    """
-
-    velocity: float = 0.0
-    spin: float = 0.0
-    strike_height: float = 0.0
-    rest_height: float = 0.0
-    flight: float = 1.0
-    turn: float = 1.0
+    velocity: float = 0.0  # m/s, of each component of a velocity after a strike: the law's own spread
+    spin: float = 0.0  # rad/s, of each component of an angular velocity after a strike
+    strike_height: float = 0.0  # m, of the height of a corner that strikes
+    rest_height: float = 0.0  # m, of the height of a corner at rest
+    flight: float = 1.0  # factor on the noise of positions, for the mass centre from first flights
+    turn: float = 1.0  # factor on the noise of orientations, for the ratios of moments from first flights
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)

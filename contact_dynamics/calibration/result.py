@@ -77,48 +77,31 @@ class Estimate(Record):
 
 @dataclass(frozen=True, slots=True, kw_only=True, repr=False)
 class Outlier(Record):
-    """An observation that was rejected.
+    """An observation that was rejected."""
 
-    Attributes:
-        recording: Name of the toss.
-        kind: What was observed, such as "velocities after impacts".
-        time: s, on the recording's clock; NaN for observations without a single time.
-        size: How large its residuals are, in standard deviations.
-    """
-
-    recording: str
-    kind: str
-    time: float
-    size: float
+    recording: str  # name of the toss
+    kind: str  # kind of the observation, such as "velocities after impacts"
+    time: float  # s, on the recording's clock; NaN for observations without a single time
+    size: float  # size of its residuals, in standard deviations
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, repr=False)
 class MeasuredGravity(Record):
-    """Gravity as first flights show it.
+    """Gravity, measured in first flights."""
 
-    Attributes:
-        mean_W: (3,), m/s^2, mean over the tosses, world axes.
-        mean_std: m/s^2, standard deviation of a component of the mean, by the scatter between tosses; NaN for
-            a single one.
-        size: m/s^2, mean size.
-        size_std: m/s^2, its standard deviation; NaN for a single toss.
-        tilt: rad, median angle between a toss's gravity and the mean.
-        expected_tilt: rad, the same as the noise of positions alone would make it.
-        count: Number of tosses whose first flight determines gravity.
-        turning: m/s^2, by how much it differs from toss to toss without the noise of positions: the standard
-            deviation of each component across the mean. Gravity does so where recordings are tilted.
-        changing: m/s^2, the same along the mean.
-    """
-
-    mean_W: FloatArray
+    mean_W: FloatArray  # (3,), m/s^2, mean over the tosses, world axes
+    # m/s^2, standard deviation of a component of the mean, by the scatter between tosses; NaN for a single
+    # one
     mean_std: float
-    size: float
-    size_std: float
-    tilt: float
-    expected_tilt: float
-    count: int
+    size: float  # m/s^2, mean size
+    size_std: float  # m/s^2, its standard deviation; NaN for a single toss
+    tilt: float  # rad, median angle between a toss's gravity and the mean
+    expected_tilt: float  # rad, this angle under the noise of positions alone
+    count: int  # number of tosses whose first flight determines gravity
+    # m/s^2, scatter from toss to toss without the noise of positions: standard deviation of each component
+    # across the mean. Tilted recordings cause it.
     turning: float
-    changing: float
+    changing: float  # m/s^2, the same along the mean
 
     @property
     def covariance_W(self) -> FloatArray:

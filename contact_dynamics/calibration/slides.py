@@ -48,21 +48,13 @@ _MEDIAN: Final = 1.2533  # the standard deviation of a median, relative to that 
 
 @dataclass(frozen=True, slots=True, kw_only=True, repr=False)
 class LastingFriction(Record):
-    """Friction of sustained contact with one surface.
+    """Friction of sustained contact with one surface."""
 
-    Attributes:
-        surface: Its name.
-        friction: Coulomb's mu, the median of all slides.
-        std: Its standard deviation, by the scatter between slides.
-        scatter: Standard deviation from slide to slide, without the noise of measurement.
-        slides: Number of slides.
-    """
-
-    surface: str
-    friction: float
-    std: float
-    scatter: float
-    slides: int
+    surface: str  # its name
+    friction: float  # Coulomb's mu, the median of all slides
+    std: float  # its standard deviation, by the scatter between slides
+    scatter: float  # standard deviation from slide to slide, without the noise of measurement
+    slides: int  # number of slides
 
 
 class _Slide(NamedTuple):

@@ -24,54 +24,31 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
 class Comparison(Record):
-    """One prediction of one event, and its errors.
+    """One prediction of one event, and its errors."""
 
-    Attributes:
-        event: Number of the event in its recording, from 0.
-        kind: Kind of the event.
-        body: Name of the body.
-        surface: Name of the surface; empty for a flight.
-        time: Time of the event, s after the recording's first state; for a toss, the time in its file.
-        horizon: Look-ahead time of the prediction, s.
-        method: Source of the prediction's initial state.
-        law: Impact law, or None if the prediction contains no impact.
-        refused: Reason why there is no prediction; empty if there is one.
-        time_error: s, predicted minus measured.
-        position_error: m, distance of the predicted from the measured centre of mass.
-        attitude_error: rad, angle between the predicted and the measured attitude.
-        velocity_error: m/s, norm of the difference of linear velocities.
-        spin_error: rad/s, norm of the difference of angular velocities.
-        predicted_mode: All consistent modes, or the verdict if there is none.
-        measured_mode: Letters of the measured contacts.
-        mode_is_right: True if a consistent mode is of the measured kind, rest or sliding.
-        distance: Mahalanobis distance of the prediction from the measurement, with the covariances of both;
-            with the model error of a law, the normal distance of the same probability.
-        degrees: Number of components in ``distance``.
-        several: True if several corners may have struck (`FoundEvent.several`).
-        predicted: (13,), predicted position, quaternion, linear and angular velocity.
-    """
-
-    event: int
+    event: int  # number of the event in its recording, from 0
     kind: EventKind
-    body: str
-    surface: str
-    time: float
-    horizon: float
-    method: Method
-    law: Law | None = None
-    refused: str = ""
-    time_error: float | None = None
-    position_error: float | None = None
-    attitude_error: float | None = None
-    velocity_error: float | None = None
-    spin_error: float | None = None
-    predicted_mode: str = ""
-    measured_mode: str = ""
-    mode_is_right: bool | None = None
+    body: str  # name of the body
+    surface: str  # name of the surface; empty for a flight
+    time: float  # time of the event, s after the recording's first state; for a toss, the time in its file
+    horizon: float  # look-ahead time of the prediction, s
+    method: Method  # source of the prediction's initial state
+    law: Law | None = None  # impact law, or None if the prediction contains no impact
+    refused: str = ""  # reason why there is no prediction; empty if there is one
+    time_error: float | None = None  # s, predicted minus measured
+    position_error: float | None = None  # m, distance of the predicted from the measured centre of mass
+    attitude_error: float | None = None  # rad, angle between the predicted and the measured attitude
+    velocity_error: float | None = None  # m/s, norm of the difference of linear velocities
+    spin_error: float | None = None  # rad/s, norm of the difference of angular velocities
+    predicted_mode: str = ""  # all consistent modes, or the verdict if there is none
+    measured_mode: str = ""  # letters of the measured contacts
+    mode_is_right: bool | None = None  # True if a consistent mode is of the measured kind, rest or sliding
+    # Mahalanobis distance of the prediction from the measurement, with the covariances of both; with the
+    # model error of a law, the normal distance of the same probability
     distance: float | None = None
-    degrees: int = 0
-    several: bool = False
-    predicted: FloatArray | None = None
+    degrees: int = 0  # number of components in ``distance``
+    several: bool = False  # True if several corners may have struck (`FoundEvent.several`)
+    predicted: FloatArray | None = None  # (13,), predicted position, quaternion, linear and angular velocity
 
 
 def pose_difference(predicted: BodyState, measured: BodyState) -> FloatArray:

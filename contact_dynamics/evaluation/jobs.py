@@ -42,20 +42,13 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True, kw_only=True, repr=False)
 class Job(Record):
-    """The evaluation of one recording.
-
-    Attributes:
-        source: The recording.
-        settings: Horizons, laws and fit window.
-        config: Parameter file with bodies, surfaces and topics. By default, the recording's own configuration
-            is used.
-        asked_with: Parameter file for the predictions, if it differs from ``config``, with which the events
-            are found.
-    """
+    """The evaluation of one recording."""
 
     source: Source
-    settings: Settings
+    settings: Settings  # horizons, laws and fit window
+    # Parameter file with bodies, surfaces and topics. By default, the recording's own configuration is used.
     config: Path | None = None
+    # Parameter file for the predictions, if it differs from ``config``, with which the events are found
     asked_with: Path | None = None
 
     def key(self) -> str:

@@ -46,19 +46,14 @@ _SLOWEST: Final = 0.05
 class ModelError(Record):
     """Model errors of predictions, in addition to measurement noise, as `calibrate` reports them.
 
-    Attributes:
-        velocity: m/s, >= 0, of each component of the velocity after an impact.
-        spin: rad/s, >= 0, of each component of the angular velocity after an impact.
-        height: m, >= 0, of the height of a corner at a first contact.
-        gravity_W: (3, 3), m^2/s^4, covariance of gravity from one recording to another, world axes.
-
     Raises:
         InvalidFieldError: a number is negative or not finite.
     """
 
-    velocity: float = 0.0
-    spin: float = 0.0
-    height: float = 0.0
+    velocity: float = 0.0  # m/s, >= 0, of each component of the velocity after an impact
+    spin: float = 0.0  # rad/s, >= 0, of each component of the angular velocity after an impact
+    height: float = 0.0  # m, >= 0, of the height of a corner at a first contact
+    # (3, 3), m^2/s^4, covariance of gravity from one recording to another, world axes
     gravity_W: FloatArray = field(default_factory=lambda: np.zeros((3, 3)))
 
     def __post_init__(self) -> None:

@@ -29,17 +29,11 @@ SLOW: Final = 5.0
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
 class Recording(Record):
-    """The content of one log or one toss.
+    """The content of one log or one toss."""
 
-    Attributes:
-        motions: The measured states, by body and in stretches without gaps.
-        informed: The configuration of bodies, surfaces and tolerances.
-        damage: Description of what could not be read; empty for an intact recording.
-    """
-
-    motions: tuple[MeasuredMotion, ...]
-    informed: Informed
-    damage: str = ""
+    motions: tuple[MeasuredMotion, ...]  # the measured states, by body and in stretches without gaps
+    informed: Informed  # the configuration of bodies, surfaces and tolerances
+    damage: str = ""  # description of what could not be read; empty for an intact recording
 
 
 def evaluate_recording(

@@ -31,42 +31,25 @@ _ARRAYS: Final = frozenset({"predicted", "orientation_std", "angular_velocity_st
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
 class SourceResult(Record):
-    """The evaluation of one recording.
+    """The evaluation of one recording."""
 
-    Attributes:
-        source: Name of the recording; may be empty.
-        digest: Hash of its content; empty if unknown.
-        problem: Reason why it was not evaluated; empty if it was.
-        damage: Description of what could not be read; empty for an intact recording.
-        states: Number of measured states.
-        seconds: Duration of measured motion, summed over all bodies, s.
-        events: The events, in the order of bodies and time.
-        comparisons: A row for each prediction of each event.
-    """
-
-    source: str = ""
-    digest: str = ""
-    problem: str = ""
-    damage: str = ""
-    states: int = 0
-    seconds: float = 0.0
-    events: tuple[FoundEvent, ...] = ()
-    comparisons: tuple[Comparison, ...] = ()
+    source: str = ""  # name of the recording; may be empty
+    digest: str = ""  # hash of its content; empty if unknown
+    problem: str = ""  # reason why it was not evaluated; empty if it was
+    damage: str = ""  # description of what could not be read; empty for an intact recording
+    states: int = 0  # number of measured states
+    seconds: float = 0.0  # duration of measured motion, summed over all bodies, s
+    events: tuple[FoundEvent, ...] = ()  # the events, in the order of bodies and time
+    comparisons: tuple[Comparison, ...] = ()  # a row for each prediction of each event
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
 class Evaluation(Record):
-    """The evaluation of all recordings.
+    """The evaluation of all recordings."""
 
-    Attributes:
-        versions: Versions of the software, by name, with a hash of the package's code.
-        configuration: Description of the source of bodies and surfaces.
-        results: Result of each recording, in the order given.
-    """
-
-    versions: dict[str, str]
-    configuration: str
-    results: tuple[SourceResult, ...]
+    versions: dict[str, str]  # versions of the software, by name, with a hash of the package's code
+    configuration: str  # description of the source of bodies and surfaces
+    results: tuple[SourceResult, ...]  # result of each recording, in the order given
 
     def rows(self) -> list[tuple[str, Comparison]]:
         """Return all comparisons, each with its recording's name."""

@@ -66,20 +66,15 @@ class Method(Enum):
 class Settings(Record):
     """Settings of the predictions.
 
-    Attributes:
-        horizons: s, > 0, look-ahead times.
-        laws: Impact laws. The first one is also applied to the newest state, without a fit.
-        fit_window: s, > 0, duration of the states to which a flight is fitted.
-        error: Model errors in addition to measurement noise.
-
     Raises:
         InvalidFieldError: ``horizons`` or ``laws`` is empty, or a number is not > 0.
     """
 
-    horizons: tuple[float, ...] = HORIZONS
+    horizons: tuple[float, ...] = HORIZONS  # s, > 0, look-ahead times
+    # Impact laws. The first one is also applied to the newest state, without a fit.
     laws: tuple[Law, ...] = tuple(Law)
-    fit_window: float = FIT_WINDOW
-    error: ModelError = field(default_factory=ModelError)
+    fit_window: float = FIT_WINDOW  # s, > 0, duration of the states to which a flight is fitted
+    error: ModelError = field(default_factory=ModelError)  # model errors in addition to measurement noise
 
     def __post_init__(self) -> None:
         """Check the fields, and sort the horizons."""

@@ -45,27 +45,16 @@ _SEED: Final = 1945
 
 @dataclass(frozen=True, slots=True, kw_only=True, repr=False)
 class Change(Group):
-    """One error of one group in two evaluations.
+    """One error of one group in two evaluations."""
 
-    Attributes:
-        error: Name of the error, from `ERRORS`, or ``wrong_mode``, which is 1 for a wrong mode, else 0.
-        pairs: Number of events that both evaluations predicted.
-        units: Independent units of the test, "recordings" or "events".
-        first: Mean absolute error in the first evaluation.
-        second: Mean absolute error in the second evaluation.
-        low: Lower end of the 95 % interval of the mean difference, second minus first.
-        high: Upper end of this interval.
-        probability: p-value of the difference, adjusted for the number of tests.
-    """
-
-    error: str
-    pairs: int
-    units: str
-    first: float
-    second: float
-    low: float
-    high: float
-    probability: float
+    error: str  # name of the error, from `ERRORS`, or ``wrong_mode``, which is 1 for a wrong mode, else 0
+    pairs: int  # number of events that both evaluations predicted
+    units: str  # independent units of the test, "recordings" or "events"
+    first: float  # mean absolute error in the first evaluation
+    second: float  # mean absolute error in the second evaluation
+    low: float  # lower end of the 95 % interval of the mean difference, second minus first
+    high: float  # upper end of this interval
+    probability: float  # p-value of the difference, adjusted for the number of tests
 
 
 def changes(first: Evaluation, second: Evaluation) -> list[Change]:

@@ -37,19 +37,13 @@ _BLOCK: Final = 1 << 20  # bytes per read
 
 @dataclass(frozen=True, slots=True, kw_only=True, repr=False)
 class Source(Record):
-    """One recording to evaluate, before it is read.
+    """One recording to evaluate, before it is read."""
 
-    Attributes:
-        path: Folder of a log or one of its files, or a file of tosses.
-        index: Number of the toss in an ``.npz``, or None if the file is one recording.
-        bodies: Names of the log's bodies to evaluate, or all if empty. Name and digest do not depend on them.
-        share: Share of their events to predict, as in `evaluate_recording`. Name and digest do not depend on
-            it.
-    """
-
-    path: Path
-    index: int | None = None
+    path: Path  # folder of a log or one of its files, or a file of tosses
+    index: int | None = None  # number of the toss in an ``.npz``, or None if the file is one recording
+    # Names of the log's bodies to evaluate, or all if empty. Name and digest do not depend on them.
     bodies: tuple[str, ...] = ()
+    # Share of their events to predict, as in `evaluate_recording`. Name and digest do not depend on it.
     share: tuple[int, int] = (0, 1)
 
     @property

@@ -28,25 +28,15 @@ ERRORS: Final = ("time_error", "position_error", "attitude_error", "velocity_err
 
 @dataclass(frozen=True, slots=True, kw_only=True, repr=False)
 class Group(Record):
-    """The fields that all comparisons of a group share.
-
-    Attributes:
-        kind: Kind of the events.
-        body: Name of the body.
-        surface: Name of the surface; empty for flights.
-        several: True if several corners may have struck.
-        horizon: Look-ahead time, s.
-        method: Source of the predictions' initial states.
-        law: Impact law, or None if the predictions contain no impact.
-    """
+    """The fields that all comparisons of a group share."""
 
     kind: EventKind
-    body: str
-    surface: str
-    several: bool
-    horizon: float
-    method: Method
-    law: Law | None
+    body: str  # name of the body
+    surface: str  # name of the surface; empty for flights
+    several: bool  # True if several corners may have struck
+    horizon: float  # look-ahead time, s
+    method: Method  # source of the predictions' initial states
+    law: Law | None  # impact law, or None if the predictions contain no impact
 
     @staticmethod
     def shared(row: Comparison | Group) -> dict[str, Any]:
@@ -56,43 +46,28 @@ class Group(Record):
 
 @dataclass(frozen=True, slots=True, kw_only=True, repr=False)
 class Spread(Record):
-    """The distribution of one error.
+    """The distribution of one error."""
 
-    Attributes:
-        bias: Median of the signed error, which equals ``median`` for an error >= 0.
-        median: Median of the absolute error.
-        most: 90 % quantile of the absolute error.
-        count: Number of errors.
-    """
-
-    bias: float
-    median: float
-    most: float
-    count: int
+    bias: float  # median of the signed error, which equals ``median`` for an error >= 0
+    median: float  # median of the absolute error
+    most: float  # 90 % quantile of the absolute error
+    count: int  # number of errors
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, repr=False)
 class Summary(Group):
-    """The comparisons of one group.
+    """The comparisons of one group."""
 
-    Attributes:
-        asked: Number of requests.
-        refused: Number of rejected requests.
-        errors: Distribution of each error in `ERRORS` that occurs.
-        impacts: Number of contact mode requests that returned an impact, because the published velocity still
-            approached the surface.
-        modes_right: Share of the other contact modes that were correct, or None without any.
-        covered: Share of measured values inside each region of `LEVELS`; empty without covariances.
-        covariances: Number of predictions with a covariance.
-    """
-
-    asked: int
-    refused: int
-    errors: dict[str, Spread]
+    asked: int  # number of requests
+    refused: int  # number of rejected requests
+    errors: dict[str, Spread]  # distribution of each error in `ERRORS` that occurs
+    # Number of contact mode requests that returned an impact, because the published velocity still approached
+    # the surface
     impacts: int
-    modes_right: float | None
+    modes_right: float | None  # share of the other contact modes that were correct, or None without any
+    # Share of measured values inside each region of `LEVELS`; empty without covariances
     covered: tuple[float, ...]
-    covariances: int
+    covariances: int  # number of predictions with a covariance
 
 
 def summarise(rows: Iterable[Comparison]) -> list[Summary]:

@@ -55,28 +55,20 @@ REMEMBERED: Final = 200
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
 class SurfaceReport(Record):
-    """Estimates of a surface's coefficients, and detected changes, after an impact.
+    """Estimates of a surface's coefficients, and detected changes, after an impact."""
 
-    Attributes:
-        impact: The latest impact, widened by ``scatter``.
-        scatter: (2,), >= 1, factor on the standard deviations along restitution and friction, for the scatter
-            of the coefficients from impact to impact.
-        impacts: Number of impacts since the start of the estimate.
-        values: (2,), estimated restitution and friction, NaN if unknown.
-        stds: (2,), their standard deviations.
-        sums: (2,), largest sum of log-likelihood ratios for a changed restitution and a changed friction.
-        changed: Coefficient whose change explains the impacts best, or None if no change is detected.
-        is_new: True at the impact at which the change is first detected.
-    """
-
-    impact: ImpactEvidence
+    impact: ImpactEvidence  # the latest impact, widened by ``scatter``
+    # (2,), >= 1, factor on the standard deviations along restitution and friction, for the scatter of the
+    # coefficients from impact to impact
     scatter: FloatArray
-    impacts: int
-    values: FloatArray
-    stds: FloatArray
+    impacts: int  # number of impacts since the start of the estimate
+    values: FloatArray  # (2,), estimated restitution and friction, NaN if unknown
+    stds: FloatArray  # (2,), their standard deviations
+    # (2,), largest sum of log-likelihood ratios for a changed restitution and a changed friction
     sums: FloatArray
+    # Coefficient whose change explains the impacts best, or None if no change is detected
     changed: Parameter | None
-    is_new: bool
+    is_new: bool  # True at the impact at which the change is first detected
 
 
 class SurfaceChanges:

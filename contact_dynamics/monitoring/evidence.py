@@ -51,23 +51,14 @@ class Parameter(Enum):
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
 class ImpactEvidence(Record):
-    """One impact, with what it shows.
+    """One impact, as evidence of restitution and friction."""
 
-    Attributes:
-        struck: The body in its state just before the impact, with its contact.
-        normal_W: (3,), unit normal into the body, world axes.
-        measured: (6,), velocities just after the impact, m/s and rad/s, world axes.
-        inverse: (6, 6), inverse of the covariance of the difference.
-        configured: (2,), restitution and friction.
-        freedom: Degrees of freedom of Student's t, or infinity.
-    """
-
-    struck: StrikingBodies
-    normal_W: FloatArray
-    measured: FloatArray
-    inverse: FloatArray
-    configured: FloatArray
-    freedom: float
+    struck: StrikingBodies  # the body in its state just before the impact, with its contact
+    normal_W: FloatArray  # (3,), unit normal into the body, world axes
+    measured: FloatArray  # (6,), velocities just after the impact, m/s and rad/s, world axes
+    inverse: FloatArray  # (6, 6), inverse of the covariance of the difference
+    configured: FloatArray  # (2,), restitution and friction
+    freedom: float  # degrees of freedom of Student's t, or infinity
 
     @property
     def distance(self) -> float:

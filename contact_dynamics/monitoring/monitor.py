@@ -63,18 +63,14 @@ KEPT: Final = 3.0
 class MonitorSettings(Record):
     """Settings of a monitor.
 
-    Attributes:
-        horizon: s, > 0, how long before an event it is predicted.
-        error: Model errors in addition to measurement noise.
-        noise: Standard deviations of measured positions, m, and orientations, rad. If it is None, they are
-            estimated from the states.
-
     Raises:
         InvalidFieldError: a number is not > 0.
     """
 
-    horizon: float = 0.02
-    error: ModelError = field(default_factory=ModelError)
+    horizon: float = 0.02  # s, > 0, how long before an event it is predicted
+    error: ModelError = field(default_factory=ModelError)  # model errors in addition to measurement noise
+    # Standard deviations of measured positions, m, and orientations, rad. If it is None, they are estimated
+    # from the states.
     noise: tuple[float, float] | None = None
 
     def __post_init__(self) -> None:

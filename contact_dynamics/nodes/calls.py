@@ -25,47 +25,29 @@ _MAX_OPEN: Final = 10_000  # calls whose events may still arrive, since a call w
 
 
 class EventTimes(NamedTuple):
-    """The time of what an event reports, ns since the epoch.
+    """The time of what an event reports, ns since the epoch."""
 
-    Attributes:
-        log_time_ns: The time on the clock of this machine.
-        publish_time_ns: The time on the node's clock. That of a request is the present time of the question.
-            If None, the event's own stamp counts.
-        is_logged: Whether the log already has the event.
-    """
-
-    log_time_ns: int
+    log_time_ns: int  # the time on the clock of this machine
+    # The time on the node's clock. That of a request is the present time of the question. If None, the
+    # event's own stamp counts.
     publish_time_ns: int | None = None
-    is_logged: bool = False
+    is_logged: bool = False  # whether the log already has the event
 
 
 @dataclass(slots=True, kw_only=True, eq=False)
 class Call:
-    """A call of a service.
+    """A call of a service."""
 
-    Attributes:
-        response: The response, which is valid once the call is done.
-        header: The header with which DDS sends the response, once it is known.
-        node_clock_ns: Time of arrival on the clock that stamps the events, ns.
-        received_ns: Time of arrival on the clock of this machine, ns since the epoch.
-        begun: Time of arrival on a clock that measures durations, s.
-        is_done: Whether the response can be sent.
-        sent_ns: Time at which the response was sent, on the clock of this machine.
-        client: The identity of the client, or empty until the event of the request arrives.
-        sequence_number: The number of the request among those of its client, from the same event.
-        is_logged: Whether the log has the response already, before its event.
-    """
-
-    response: Response
-    header: Any
-    node_clock_ns: int
-    received_ns: int
-    begun: float
-    is_done: bool = False
-    sent_ns: int = 0
-    client: bytes = b""
-    sequence_number: int = 0
-    is_logged: bool = False
+    response: Response  # the response, which is valid once the call is done
+    header: Any  # the header with which DDS sends the response, once it is known
+    node_clock_ns: int  # time of arrival on the clock that stamps the events, ns
+    received_ns: int  # time of arrival on the clock of this machine, ns since the epoch
+    begun: float  # time of arrival on a clock that measures durations, s
+    is_done: bool = False  # whether the response can be sent
+    sent_ns: int = 0  # time at which the response was sent, on the clock of this machine
+    client: bytes = b""  # the identity of the client, or empty until the event of the request arrives
+    sequence_number: int = 0  # the number of the request among those of its client, from the same event
+    is_logged: bool = False  # whether the log has the response already, before its event
 
     def finish(self) -> None:
         """Note that the response can be sent, and how long it took."""

@@ -37,16 +37,11 @@ _WARN_EVERY_S: Final = 5.0
 
 
 class Taken(NamedTuple):
-    """A received message.
+    """A received message."""
 
-    Attributes:
-        data: Its bytes.
-        received_ns: Time of reception by DDS, ns since the epoch on the clock of this machine.
-        number: Its number among those of its publisher, from 1, or None if the middleware provides none.
-    """
-
-    data: bytes
-    received_ns: int
+    data: bytes  # its bytes
+    received_ns: int  # time of reception by DDS, ns since the epoch on the clock of this machine
+    # Its number among those of its publisher, from 1, or None if the middleware provides none
     number: int | None
 
 

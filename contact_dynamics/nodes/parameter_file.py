@@ -35,17 +35,11 @@ _GIVEN: Final = re.compile(r"(?:([^:=]+):)?([^:=]+):=(.*)", re.DOTALL)
 
 
 class Section(NamedTuple):
-    """The parameters for the nodes of one name.
+    """The parameters for the nodes of one name."""
 
-    Attributes:
-        node: The name as ROS understands it, with a leading slash. It may have `*` and `/**`.
-        values: The values by their names, which may be nested.
-        repeated: The parameters that stand in it more than once, in words.
-    """
-
-    node: str
-    values: dict[str, Any]
-    repeated: tuple[str, ...] = ()
+    node: str  # The name as ROS understands it, with a leading slash. It may have `*` and `/**`.
+    values: dict[str, Any]  # the values by their names, which may be nested
+    repeated: tuple[str, ...] = ()  # a sentence for each parameter that it contains more than once
 
     def is_for(self, full_name: str) -> bool:
         """Tell whether a node of this full name gets the parameters."""

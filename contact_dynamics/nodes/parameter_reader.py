@@ -30,34 +30,21 @@ class ConfigurationError(ContactDynamicsError):
 
 
 class DeclaredParameter(NamedTuple):
-    """A parameter as it is declared or read, in the order of the arguments of `ParameterSource.value`.
+    """A parameter as it is declared or read, in the order of the arguments of `ParameterSource.value`."""
 
-    Attributes:
-        name: Its name.
-        value: Its default, or the value that was read.
-        description: What it means, for people.
-        bounds: Its least and greatest value, if it has any.
-    """
-
-    name: str
-    value: Any
-    description: str
-    bounds: tuple[float, float] | None = None
+    name: str  # its name
+    value: Any  # its default, or the value that was read
+    description: str  # its description
+    bounds: tuple[float, float] | None = None  # its smallest and largest value, or None
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ConfiguredTopic:
-    """A topic as it is configured.
+    """A topic as it is configured."""
 
-    Attributes:
-        name: Its name in the configuration.
-        full_name: Its name after ROS's remapping.
-        parameter: The parameter that names it.
-    """
-
-    name: str
-    full_name: str
-    parameter: str
+    name: str  # its name in the configuration
+    full_name: str  # its name after ROS's remapping
+    parameter: str  # the parameter that names it
 
 
 class ParameterSource:

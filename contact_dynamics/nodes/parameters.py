@@ -44,43 +44,27 @@ MEGABYTE: Final = 1_000_000
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ServerParameters:
-    """The whole configuration of the server.
-
-    Attributes:
-        carried: The surfaces that move with a body.
-        sources: The sources of states, for each body.
-        static_topic: The topic of the transforms between frames that stand still, or None.
-        state_timeout: s.
-        state_history: s.
-        future_tolerance: s.
-        max_states: How many states of a body are kept.
-        fault_limits: When faults of topics are told.
-        client_gone_for: s for which a client that seemed gone gets no answers to what it asked before.
-        defaults: What holds where a question says nothing.
-        autostart: Whether the node configures and activates itself at its start.
-        worker_limits: What the processes may take that answer what takes long.
-        log_before_answer: Whether an answer leaves only once it is on the disk.
-        log_limits: How the log is cut into files, and which of them are kept.
-    """
+    """The whole configuration of the server."""
 
     world: World
-    carried: tuple[CarriedSurface, ...]
-    sources: tuple[BodySources, ...]
+    carried: tuple[CarriedSurface, ...]  # the surfaces that move with a body
+    sources: tuple[BodySources, ...]  # the sources of states, for each body
+    # The topic of the transforms between frames that stand still, or None
     static_topic: ConfiguredTopic | None
     world_frame: str
-    state_timeout: float
-    state_history: float
-    future_tolerance: float
-    max_states: int
-    fault_limits: FaultLimits
-    client_gone_for: float
-    defaults: Defaults
-    worker_limits: WorkerLimits
-    autostart: bool
+    state_timeout: float  # s, largest age of the latest state
+    state_history: float  # s, length of the history of states
+    future_tolerance: float  # s, largest lead of a stamp over the node's clock
+    max_states: int  # largest number of stored states of a body
+    fault_limits: FaultLimits  # limits for warnings about topics
+    client_gone_for: float  # s, how long old requests of a lost client are dropped
+    defaults: Defaults  # defaults of fields that a request leaves out
+    worker_limits: WorkerLimits  # limits of the worker processes
+    autostart: bool  # whether the node configures and activates itself at its start
     log: bool
     log_directory: str
-    log_before_answer: bool
-    log_limits: LogLimits
+    log_before_answer: bool  # whether a response is sent only once it is on the disk
+    log_limits: LogLimits  # how the log is cut into files, and which of them are kept
 
 
 @cache

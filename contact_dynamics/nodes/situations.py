@@ -20,16 +20,12 @@ NO_MCAP: Final = "no log is written, because the Python package mcap is not inst
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class FaultLimits:
-    """When faults are reported.
+    """When faults are reported."""
 
-    Attributes:
-        warn_every: s, between two warnings of one kind about one topic. A fault of another kind or topic is
-            reported at once.
-        silent_after: s without a message, after which a topic counts as silent.
-    """
-
+    # s, between two warnings of one kind about one topic. A fault of another kind or topic is reported at
+    # once.
     warn_every: float = 5.0
-    silent_after: float = 2.0
+    silent_after: float = 2.0  # s without a message, after which a topic counts as silent
 
 
 class Level(IntEnum):
@@ -50,17 +46,11 @@ class Part(Enum):
 
 
 class Present(NamedTuple):
-    """A situation that is present.
+    """A situation that is present."""
 
-    Attributes:
-        part: The status that reports it.
-        level: Its level.
-        text: What is reported.
-    """
-
-    part: Part
-    level: Level
-    text: str
+    part: Part  # the status that reports it
+    level: Level  # its level
+    text: str  # what is reported
 
 
 class _Row(NamedTuple):

@@ -50,15 +50,11 @@ STATIC_TYPE: Final = "tf2_msgs/msg/TFMessage"
 
 
 class BodyReader(NamedTuple):
-    """What reads the messages about one body.
+    """The reader of the messages about one body."""
 
-    Attributes:
-        body_name: The body.
-        state_from: Function from a message to a state, or to None if another message must complete it, or if
-            it says nothing of this body.
-    """
-
-    body_name: str
+    body_name: str  # the body
+    # Function from a message to a state, or to None if another message must complete it, or if it contains
+    # no state of this body
     state_from: Reader
 
     def believable(self, msg: object) -> KnownState | None:
@@ -75,27 +71,18 @@ class BodyReader(NamedTuple):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class StateSource:
-    """One topic with messages about bodies, or about the frames that their states are in.
+    """One topic with messages about bodies, or about the frames that their states are in."""
 
-    Attributes:
-        topic: Its name, as it is configured.
-        full_name: Its name after ROS's remapping.
-        type_name: "package/msg/Name".
-        readers: One for each body. Each reads every message.
-        is_latched: Whether the last messages come to who subscribes later.
-        is_whole: Whether each message is a state by itself, stamped by its leading header. It can then be
-            read later, or never.
-        is_of_one_body: Whether each message is about one body, whatever that is called.
-        rows: Makes the states of many messages about its one body, as `StateAdapter` says, or None.
-    """
-
-    topic: str
-    full_name: str
-    type_name: str
-    readers: tuple[BodyReader, ...]
-    is_latched: bool = False
+    topic: str  # its name, as it is configured
+    full_name: str  # its name after ROS's remapping
+    type_name: str  # "package/msg/Name"
+    readers: tuple[BodyReader, ...]  # One for each body. Each reads every message.
+    is_latched: bool = False  # whether later subscribers receive the last messages
+    # Whether each message is a complete state, stamped by its leading header, so it can be decoded later or
+    # never
     is_whole: bool = False
-    is_of_one_body: bool = False
+    is_of_one_body: bool = False  # whether each message is about one body, whatever its name
+    # Makes the states of many messages about its one body, as `StateAdapter` says, or None
     rows: Callable[[Any], StateRows | None] | None = None
 
 

@@ -77,28 +77,18 @@ class TopicFaults:
 
 @dataclass(slots=True, kw_only=True)
 class TopicTraffic:
-    """Statistics of a topic.
+    """Statistics of a topic."""
 
-    Attributes:
-        topic: The topic.
-        one_publisher: Whether its messages should come from a single publisher.
-        may_rest: Whether the topic may be silent, as that of static transforms.
-        received: Number of received messages.
-        lost: Number of lost messages, from the sequence numbers of received ones.
-        age: s, age of the latest message at the last check, or None before the first message.
-        rate: Hz, rate of messages between the last two checks.
-        is_silent: Whether the topic had become silent at the last check.
-    """
-
-    topic: str
+    topic: str  # the topic
     faults: TopicFaults
-    one_publisher: bool
-    may_rest: bool = False
-    received: int = 0
-    lost: int = 0
+    one_publisher: bool  # whether its messages should come from a single publisher
+    may_rest: bool = False  # whether the topic may be silent, as that of static transforms
+    received: int = 0  # number of received messages
+    lost: int = 0  # number of lost messages, from the sequence numbers of received ones
+    # s, age of the latest message at the last check, or None before the first message
     age: float | None = None
-    rate: float = 0.0
-    is_silent: bool = False
+    rate: float = 0.0  # Hz, rate of messages between the last two checks
+    is_silent: bool = False  # whether the topic had become silent at the last check
     _newest: float = 0.0
     _number: int | None = None
     _is_steady: bool = True

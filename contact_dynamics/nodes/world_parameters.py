@@ -47,34 +47,22 @@ MAX_DEVIATION: Final = 1e6
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ConfiguredSource:
-    """A source of a body's states.
+    """A source of a body's states."""
 
-    Attributes:
-        adapter: The name of the adapter that reads its messages.
-        topics: Its topics, in the adapter's order.
-    """
-
-    adapter: str
-    topics: tuple[ConfiguredTopic, ...]
+    adapter: str  # the name of the adapter that reads its messages
+    topics: tuple[ConfiguredTopic, ...]  # its topics, in the adapter's order
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class BodySources:
-    """The sources of a body's states.
+    """The sources of a body's states."""
 
-    Attributes:
-        body_name: The body.
-        frame: The body's frame, whose pose is published.
-        velocity_window: s, the time over which a velocity is found from poses.
-        state_deviations: Standard deviations of states without a covariance (`with_deviations`), or none.
-        sources: The sources, of which there may be several or none.
-    """
-
-    body_name: str
-    frame: str
-    velocity_window: float
+    body_name: str  # the body
+    frame: str  # the body's frame, whose pose is published
+    velocity_window: float  # s, the time over which a velocity is found from poses
+    # Standard deviations of states without a covariance (`with_deviations`), or none
     state_deviations: tuple[float, ...]
-    sources: tuple[ConfiguredSource, ...]
+    sources: tuple[ConfiguredSource, ...]  # the sources, of which there may be several or none
 
 
 _NOT_TURNED: Final = [0.0, 0.0, 0.0, 1.0]
@@ -367,19 +355,13 @@ def _read_surface(source: ParameterSource, name: str) -> Surface | Obstacle:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class _Primitive:
-    """A shape that can be configured by numbers.
+    """A shape that can be configured by numbers."""
 
-    Attributes:
-        description: What the numbers are.
-        checks: The check of each number, or None if there are three numbers for each corner.
-        shape: Makes the shape.
-        mass: Makes the mass, kg, that fills the shape evenly.
-    """
-
-    description: str
+    description: str  # description of the numbers
+    # The check of each number, or None if there are three numbers for each corner
     checks: tuple[Check, ...] | None
-    shape: ShapeMaker
-    mass: MassMaker
+    shape: ShapeMaker  # makes the shape
+    mass: MassMaker  # makes the mass, kg, that fills the shape evenly
 
 
 def _of_cylinder(radius: float, length: float, mass: float) -> MassDistribution:
@@ -433,20 +415,13 @@ DESCRIPTIONS: Final = {name: primitive.description for name, primitive in _PRIMI
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class ShapeParameters:
-    """A shape as it is configured, of a body or of an obstacle. Lengths are in m.
+    """A shape as it is configured, of a body or of an obstacle. Lengths are in m."""
 
-    Attributes:
-        numbers: The numbers of each shape in `DESCRIPTIONS`.
-        rounding: Radius of the ball that rolls over it.
-        position: Position of the shape in the body's frame, or in the world.
-        orientation: Unit quaternion x, y, z, w of the shape there.
-        pose_names: Names of the parameters for position and orientation.
-    """
-
-    numbers: dict[str, list[float]]
-    rounding: float
-    position: list[float]
-    orientation: list[float]
+    numbers: dict[str, list[float]]  # the numbers of each shape in `DESCRIPTIONS`
+    rounding: float  # radius of the ball that rolls over it
+    position: list[float]  # position of the shape in the body's frame, or in the world
+    orientation: list[float]  # unit quaternion x, y, z, w of the shape there
+    # Names of the parameters for position and orientation
     pose_names: tuple[str, str] = ("shape_position", "shape_orientation")
 
     def shape_F(self) -> ConvexShape:

@@ -316,25 +316,15 @@ _kept_landing = lru_cache(maxsize=4)(next_landing)
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
 class _Strike(Record):
-    """An impact that is to be resolved.
+    """An impact before its resolution."""
 
-    Attributes:
-        subject: The first body, in the question's state.
-        other: The second body, or None for the world.
-        seconds: The time from that state to the impact, s.
-        state: The first body just before.
-        contacts: The contacts at which it strikes.
-        velocity_tolerance: m/s. A slower approach counts as none.
-        distance_tolerance: m. A body with a smaller gap touches.
-    """
-
-    subject: Subject
-    other: Subject | None
-    seconds: float
-    state: BodyState
-    contacts: ContactSet
-    velocity_tolerance: float
-    distance_tolerance: float
+    subject: Subject  # the first body, in the question's state
+    other: Subject | None  # the second body, or None if the world is struck
+    seconds: float  # the time from that state to the impact, s
+    state: BodyState  # the first body just before
+    contacts: ContactSet  # the contacts at which it strikes
+    velocity_tolerance: float  # m/s. A slower approach counts as none.
+    distance_tolerance: float  # m. A body with a smaller gap touches.
 
     @property
     def before(self) -> tuple[list[MassProperties], list[BodyState]]:

@@ -30,33 +30,23 @@ if TYPE_CHECKING:
 
 @dataclass(slots=True, kw_only=True)
 class Arrivals:
-    """The states of one body since the beginning, kept or not.
+    """The states of one body since the beginning, kept or not."""
 
-    Attributes:
-        came: How many came.
-        rejected: How many of them were rejected, some of which were kept unread before.
-        old: How many were too old for a question about now when they came.
-        age: s. How old the last of these was.
-        reason: Why the last one that was rejected was, in words.
-        rejected_ns: When that came, ns by the clock of the stamps, or None if that is not known.
-        kept_ns: When the last one that was kept came, also unread, or None if that is not known.
-        newest_is_rejected: Whether none was kept since.
-        last_is_old: Whether the last one that was kept was too old for a question about now when it came.
-        discarded: When those that were kept were discarded, in words. It is empty if the last was rejected.
-        expected: What to say where none came.
-    """
-
-    came: int = 0
-    rejected: int = 0
-    old: int = 0
-    age: float = 0.0
-    reason: str = ""
+    came: int = 0  # number of received states
+    rejected: int = 0  # number of rejected ones, some of which were stored before they were decoded
+    old: int = 0  # number of those that were older than the timeout on arrival
+    age: float = 0.0  # s, age of the last of these on arrival
+    reason: str = ""  # the reason of the last rejection
+    # The arrival time of the last rejected state, ns on the clock of the stamps, or None if it is unknown
     rejected_ns: int | None = None
+    # The arrival time of the last stored state, ns on the clock of the stamps, or None if it is unknown
     kept_ns: int | None = None
-    newest_is_rejected: bool = False
+    newest_is_rejected: bool = False  # whether no state was stored since the last rejection
+    # Whether the last stored state was older than the timeout on arrival
     last_is_old: bool = False
+    # Why the stored states were discarded, in words. It is empty if the last state was rejected.
     discarded: str = ""
-    expected: str = "none has been received yet"
+    expected: str = "none has been received yet"  # the error text before the first state
 
     def why_none(self, now_ns: int | None) -> str:
         """Return in words why there is no state at the present time, ns."""

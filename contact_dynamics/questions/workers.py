@@ -58,19 +58,12 @@ _MEGABYTE: Final = 1_000_000
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class WorkerLimits:
-    """Limits of workers.
+    """Limits of workers."""
 
-    Attributes:
-        count: Number of workers. With 0, the server answers every question itself.
-        deadline: s, longest time from handing over a question to its answer or rejection.
-        memory: MB, memory limit of a worker for an answer.
-        max_waiting: Largest number of questions that wait while all workers are busy.
-    """
-
-    count: int = 2
-    deadline: float = 5.0
-    memory: int = 1000
-    max_waiting: int = 8
+    count: int = 2  # Number of workers. With 0, the server answers every question itself.
+    deadline: float = 5.0  # s, longest time from handing over a question to its answer or rejection
+    memory: int = 1000  # MB, memory limit of a worker for an answer
+    max_waiting: int = 8  # largest number of questions that wait while all workers are busy
 
 
 class _Ready:

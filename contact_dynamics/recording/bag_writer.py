@@ -68,17 +68,11 @@ _GAPS_KEY: Final = "gaps"  # in the record of the run
 
 
 class Gap(NamedTuple):
-    """A time in which messages were lost.
+    """A time in which messages were lost."""
 
-    Attributes:
-        from_ns: When the first of them was received, ns since the epoch.
-        until_ns: When the log resumed, ns since the epoch.
-        lost: Number of messages.
-    """
-
-    from_ns: int
-    until_ns: int
-    lost: int
+    from_ns: int  # time of reception of the first of them, ns since the epoch
+    until_ns: int  # time at which the log resumed, ns since the epoch
+    lost: int  # number of messages
 
     def __str__(self) -> str:
         """Describe what is missing."""

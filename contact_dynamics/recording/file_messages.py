@@ -24,21 +24,14 @@ if TYPE_CHECKING:
 
 
 class Topic(NamedTuple):
-    """A topic of a log.
+    """A topic of a log."""
 
-    Attributes:
-        name: Its name.
-        type_name: Its type, "package/msg/Name" or "package/srv/Name_Event".
-        definition: The type definition, empty unless its encoding is MCAP's ros2msg.
-        qos: The YAML list of what its publishers offered, which `bag_metadata.offered_qos` reads, or nothing.
-        type_hash: The hash of its type, "RIHS01_...", or nothing.
-    """
-
-    name: str
-    type_name: str
-    definition: str
+    name: str  # its name
+    type_name: str  # its type, "package/msg/Name" or "package/srv/Name_Event"
+    definition: str  # the type definition, empty unless its encoding is MCAP's ros2msg
+    # The YAML list of the QoS that its publishers offered, for `bag_metadata.offered_qos`, or an empty text
     qos: str = ""
-    type_hash: str = ""
+    type_hash: str = ""  # the hash of its type, "RIHS01_...", or an empty text
 
 
 class StoredMessage(NamedTuple):
