@@ -50,8 +50,7 @@ if TYPE_CHECKING:
 LEFT_OUT: Final = -1
 """The default of a number that a request may leave out. No such number may be negative, and zero is zero."""
 
-NOTHING: Final = np.zeros(3)
-"""No force, no torque or no gravity."""
+NOTHING: Final = np.zeros(3)  # no force, no torque or no gravity
 
 Number = TypeVar("Number", int, float)
 Member = TypeVar("Member", bound="IntEnum")

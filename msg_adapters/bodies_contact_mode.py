@@ -23,8 +23,7 @@ if TYPE_CHECKING:
 
     from contact_dynamics.world import World
 
-_WORLD: Final = -1
-"""Where another body's index is, if a body touches the world."""
+_WORLD: Final = -1  # index of the other body if a body touches the world
 
 _FIELDS: Final = {
     **{f"contacts.{name}": field for name, field in CONTACT_FIELDS.items()},

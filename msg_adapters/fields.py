@@ -64,17 +64,10 @@ def _floats(numbers: Sequence[float]) -> FloatArray:
     return np.array(numbers, dtype=np.float64)
 
 
-SAME: Final = Converted()
-"""A number, a text or a flag."""
-
-TUPLE: Final = Converted(list, tuple)
-"""A tuple, which is a list in the message."""
-
-NUMBERS: Final = Converted(flat, _floats)
-"""An array of numbers, (n,)."""
-
-FIXED: Final = Converted(np.ravel, np.array)
-"""An array of numbers, whose count the message fixes."""
+SAME: Final = Converted()  # a number, a text or a flag
+TUPLE: Final = Converted(list, tuple)  # a tuple, which is a list in the message
+NUMBERS: Final = Converted(flat, _floats)  # an array of numbers, (n,)
+FIXED: Final = Converted(np.ravel, np.array)  # an array of numbers, whose count the message fixes
 
 NUMBERS_OR_NONE: Final = Kind(
     write=lambda msg, field, value, _: None if value is None else setattr(msg, field, flat(value)),
@@ -117,8 +110,7 @@ WARNINGS: Final = Kind(
 )
 """Warnings, which follow the text that is in the field already."""
 
-TEXT_BEFORE_WARNINGS: Final = Converted(None, lambda text: without_warnings(text)[0])
-"""The text before them."""
+TEXT_BEFORE_WARNINGS: Final = Converted(None, lambda text: without_warnings(text)[0])  # the text before them
 
 CONTACTS: Final = Kind(
     write=lambda msg, field, value, _: contacts_to_msg(value, into=getattr(msg, field)),
@@ -142,8 +134,7 @@ def _read_state(msg: object, field: str, frame: Frame) -> BodyState:
     return body_state_from_msg(found, world_frame=found.header.frame_id, p_FB_F=frame.p_FB_F)
 
 
-STATE: Final = Kind(_write_state, _read_state)
-"""A state of the body."""
+STATE: Final = Kind(_write_state, _read_state)  # a state of the body
 
 
 def rows_of(width: int) -> Converted:

@@ -47,8 +47,7 @@ if TYPE_CHECKING:
     from contact_dynamics.validation import FloatArray
     from contact_dynamics.world import World
 
-_NO_END: Final = ImpactMsg().sequence_end
-"""Why there is no further strike, of an impact at one instant."""
+_NO_END: Final = ImpactMsg().sequence_end  # end of the sequence of an impact at one instant
 
 
 def impact_question_from_msg(

@@ -31,11 +31,8 @@ if TYPE_CHECKING:
     from contact_dynamics.validation import FloatArray
     from msg_adapters.state_adapter import SourceSettings
 
-LONGEST_GAP: Final = 5.0
-"""Windows without a pose, after which the poses before are forgotten."""
-
-MAX_POSES: Final = 1000
-"""Poses of one window that are kept: 20 kHz of them in the usual one."""
+LONGEST_GAP: Final = 5.0  # number of windows without a pose, after which earlier poses are discarded
+MAX_POSES: Final = 1000  # largest number of stored poses in a window: 20 kHz in the default one
 
 
 class _Pose(NamedTuple):

@@ -207,8 +207,7 @@ CONTACT_MODE: Final = (
 CONTACT_MODE_BATCH: Final = (*_CONTACT_MODES, ReadIf(("margin_length",), (When("include_margins"),)))
 """The fields of `PredictContactModeBatch`."""
 
-BODIES_CONTACT_MODE: Final = (_STAMP,)
-"""The fields of `PredictBodiesContactMode`."""
+BODIES_CONTACT_MODE: Final = (_STAMP,)  # the fields of `PredictBodiesContactMode`
 
 STATE_OF_BODY: Final = (
     ReadIf(("header", "pose", "linear_velocity", "angular_velocity", "covariance"), (_EXPLICIT,)),
@@ -263,8 +262,7 @@ HINT: Final = (
 )
 """What to do about such a number."""
 
-_FEW: Final = 20
-"""Numbers of a list that cost less one by one than NumPy's calls do."""
+_FEW: Final = 20  # length of a list up to which Python is faster than NumPy
 
 _NAN: Final = re.compile(r"(?<![\w'])nan(?![\w'])")
 

@@ -29,8 +29,7 @@ if TYPE_CHECKING:
     from contact_dynamics.numerics.clustered_fit import ClusteredFit
     from contact_dynamics.validation import FloatArray
 
-MEDIAN_OF_SQUARES: Final = {1: 0.4549, 2: 1.3863, 3: 2.3660}
-"""Medians of chi squared, by degrees of freedom."""
+MEDIAN_OF_SQUARES: Final = {1: 0.4549, 2: 1.3863, 3: 2.3660}  # medians of chi squared, by degrees of freedom
 
 SPREAD_ROUNDS: Final = 3
 """Fits, each with the spreads of the one before. The third changes estimates by a small part of their

@@ -10,30 +10,22 @@ from typing import Final
 class Free(Enum):
     """A group of parameters that can be left free."""
 
-    FRICTION = "friction"
-    """Coulomb's mu of each surface."""
-    RESTITUTION = "restitution"
-    """The coefficient e of each surface, under Poisson's law."""
-    CENTER_OF_MASS = "center_of_mass"
-    """The centre of mass in the body's frame, three coordinates."""
+    FRICTION = "friction"  # Coulomb's mu of each surface
+    RESTITUTION = "restitution"  # the coefficient e of each surface, under Poisson's law
+    CENTER_OF_MASS = "center_of_mass"  # the centre of mass in the body's frame, three coordinates
     INERTIA = "inertia"
     """One factor on the inertia. Flights alone do not tell it; strikes tell it relative to the mass."""
     INERTIA_RATIOS = "inertia_ratios"
     """Two factors: those of the moments about y and z relative to x, in the body's axes."""
-    ROUNDING = "rounding"
-    """The radius of the corners, at equal outer faces."""
-    SIZE = "size"
-    """One factor on the shape, about its middle."""
+    ROUNDING = "rounding"  # the radius of the corners, at equal outer faces
+    SIZE = "size"  # one factor on the shape, about its middle
     SHAPE_POSITION = "shape_position"
     """The shape's place in the body's frame, which is the offset of the tracked frame."""
     SHAPE_ORIENTATION = "shape_orientation"
     """The shape's turn in the body's frame, a rotation vector: how the tracked frame is turned."""
-    SURFACE_HEIGHT = "surface_height"
-    """The height of each surface along its configured normal."""
-    SURFACE_TILT = "surface_tilt"
-    """The tilt of each surface, about two axes."""
-    GRAVITY = "gravity"
-    """Gravity as a vector, for each recording by itself."""
+    SURFACE_HEIGHT = "surface_height"  # the height of each surface along its configured normal
+    SURFACE_TILT = "surface_tilt"  # the tilt of each surface, about two axes
+    GRAVITY = "gravity"  # gravity as a vector, for each recording by itself
 
 
 STANDARD: Final = (

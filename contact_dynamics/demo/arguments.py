@@ -8,10 +8,10 @@ from typing import Final
 
 from contact_dynamics.measured.read_toss import DEFAULT_RECORDING
 
+# The scenarios of the examples. Each has a launch file of the same name.
 THROWN_BOX: Final = "thrown_box"
 PUSHED_BLOCK: Final = "pushed_block"
 TRAY: Final = "tray"
-"""The scenarios of the examples. Each has a launch file of the same name."""
 
 _RECORDING = "recording: a .csv file, or a measured cube toss as .npz#INDEX (default: the package's own toss)"
 

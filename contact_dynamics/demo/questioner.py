@@ -30,8 +30,7 @@ if TYPE_CHECKING:
     from contact_dynamics.measured.recorded_toss import Toss
     from contact_dynamics.rigid_body.body import BodyState
 
-ANSWER_S: Final = 10.0
-"""Longest time to wait for a response, s, even on a busy machine."""
+ANSWER_S: Final = 10.0  # longest time to wait for a response, s, even on a busy machine
 
 LAST_MOMENT: Final = 0.025
 """Time before the predicted landing at which the impact is requested, s: late, but early enough to act."""

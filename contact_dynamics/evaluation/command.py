@@ -13,8 +13,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable
     from pathlib import Path
 
-NOTHING: Final = 2
-"""Exit code if no recording could be used, or an argument is invalid."""
+NOTHING: Final = 2  # exit code if no recording could be used, or an argument is invalid
 
 
 def run_on_recordings(

@@ -161,8 +161,7 @@ class ResultsFolder:
         partial.replace(path)
 
 
-LOCAL: Final = "local:"
-"""Prefix of a Dask address for workers on this machine, such as ``local:2``."""
+LOCAL: Final = "local:"  # prefix of a Dask address for workers on this machine, such as ``local:2``
 
 PROCESS_BYTES: Final = 1 << 20
 PROCESS_TOSSES: Final = 8

@@ -45,9 +45,7 @@ if TYPE_CHECKING:
     from contact_dynamics.validation import FloatArray
     from contact_dynamics.world import Body
 
-TRAIL_S: Final = 0.08
-"""Duration of the measured path that is drawn before and after an event, s."""
-
+TRAIL_S: Final = 0.08  # duration of the measured path that is drawn before and after an event, s
 _ARROW: Final = 1.0  # length of the longest arrow, in sizes of the body
 _FAINTEST: Final = 0.35
 _WIDTH: Final = -1.8  # negative: points of the screen

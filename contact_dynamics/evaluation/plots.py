@@ -21,8 +21,7 @@ if TYPE_CHECKING:
     from contact_dynamics.evaluation.comparison import Comparison
     from contact_dynamics.evaluation.result import Evaluation
 
-NOMINAL: Final = tuple(np.linspace(0.05, 0.99, 48).tolist())
-"""Probabilities at which coverage is plotted."""
+NOMINAL: Final = tuple(np.linspace(0.05, 0.99, 48).tolist())  # probabilities at which coverage is plotted
 
 _DRAWN: Final = (EventKind.FLIGHT, EventKind.LANDING, EventKind.IMPACT)
 _COLORS: Final = ("#e08a1e", "#3f7fb5", "#3f9b52", "#9059b0", "#8a8a8a", "#c0c0c0")

@@ -48,11 +48,8 @@ TITLES: Final = {
 SEVERAL: Final = "impacts of several corners, or longer ones: velocities after the impact"
 """Title for impacts whose outcome depends on which corners strike, and when."""
 
-SIGNIFICANT: Final = 0.05
-"""p-value below which a change is marked."""
-
-MAX_PROBLEMS: Final = 20
-"""Largest number of listed recordings with problems. The JSON contains all."""
+SIGNIFICANT: Final = 0.05  # p-value below which a change is marked
+MAX_PROBLEMS: Final = 20  # Largest number of listed recordings with problems. The JSON contains all.
 
 _WIDE: Final = 22
 

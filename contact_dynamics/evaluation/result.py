@@ -22,8 +22,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
     from pathlib import Path
 
-FORMAT: Final = "contact_dynamics evaluation 2"
-"""Value of ``format`` in the JSON of an evaluation."""
+FORMAT: Final = "contact_dynamics evaluation 2"  # value of ``format`` in the JSON of an evaluation
 
 _ENUMS: Final[dict[str, type[Enum]]] = {"kind": EventKind, "method": Method, "law": Law}
 _ARRAYS: Final = frozenset({"predicted", "orientation_std", "angular_velocity_std"})

@@ -40,8 +40,7 @@ if TYPE_CHECKING:
 
     from contact_dynamics.evaluation.sources import Source
 
-SOME_BAD: Final = 1
-"""Exit code: some recordings could not be evaluated."""
+SOME_BAD: Final = 1  # exit code: some recordings could not be evaluated
 
 
 def main(arguments: list[str]) -> int:

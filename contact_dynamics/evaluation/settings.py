@@ -15,8 +15,7 @@ from contact_dynamics.records import Record
 from contact_dynamics.tolerances import HOLD_STEP
 from contact_dynamics.validation import check_positive
 
-HORIZONS: Final = (0.02, 0.05, 0.1, 0.2)
-"""Look-ahead times, s before an event."""
+HORIZONS: Final = (0.02, 0.05, 0.1, 0.2)  # look-ahead times, s before an event
 
 FIT_WINDOW: Final = 0.1
 """Duration of the states to which a flight is fitted, s. States before the start of the flight are left out.
@@ -54,12 +53,10 @@ class Law(Enum):
 class Method(Enum):
     """Source of a prediction's initial state."""
 
-    FIT = "fit"
-    """The flight fitted to the latest states. This is the recommended method."""
+    FIT = "fit"  # The flight fitted to the latest states. This is the recommended method.
     NEWEST = "newest"
     """The newest published state. It is a baseline for flights, and the only method for contact modes."""
-    NO_IMPACT = "no impact"
-    """A baseline: the fitted flight, continued through the surface."""
+    NO_IMPACT = "no impact"  # a baseline: the fitted flight, continued through the surface
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, repr=False)

@@ -27,8 +27,7 @@ if TYPE_CHECKING:
 TOSS: Final = ".csv"
 TOSSES: Final = ".npz"
 
-LOG: Final = re.compile(r"\.(mcap|db3)(\.(zstd|zst|lz4))?$")
-"""Suffixes of a log's files."""
+LOG: Final = re.compile(r"\.(mcap|db3)(\.(zstd|zst|lz4))?$")  # suffixes of a log's files
 
 _WHAT: Final = f"a log (.mcap, .db3), a toss ({TOSS}), tosses ({TOSSES}), or a folder with any"
 

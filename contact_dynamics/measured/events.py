@@ -82,14 +82,10 @@ REST_SPIN: Final = 0.2  # rad/s. Mean angular speed over `REST_SPAN` below which
 class EventKind(Enum):
     """Kinds of events. `docs/evaluate.md` lists the criteria."""
 
-    FLIGHT = "flight"
-    """The poses agree with a free flight."""
-    LANDING = "landing"
-    """First contact: a flight ends at a surface."""
-    IMPACT = "impact"
-    """A flight ends at a surface, and another begins soon after."""
-    REST = "rest"
-    """The body touches a surface, and no contact moves."""
+    FLIGHT = "flight"  # the poses agree with a free flight
+    LANDING = "landing"  # first contact: a flight ends at a surface
+    IMPACT = "impact"  # a flight ends at a surface, and another begins soon after
+    REST = "rest"  # the body touches a surface, and no contact moves
     SLIDING = "sliding"
     """The body touches a surface, no contact separates or approaches, and at least one slides."""
 

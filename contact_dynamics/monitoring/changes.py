@@ -35,8 +35,7 @@ ENDS: Final = 0.5 * THRESHOLD
 LARGEST_SUM: Final = 2.0 * THRESHOLD
 """Upper limit of a sum, so that a report ends soon after the coefficient has returned to its old value."""
 
-LEARNED: Final = 10
-"""Smallest number of impacts from which the scatter of a coefficient is estimated."""
+LEARNED: Final = 10  # smallest number of impacts from which the scatter of a coefficient is estimated
 
 UNKNOWN_SCATTER: Final = 2.0
 """Factor on the standard deviations along both coefficients before that. On the published cube tosses it is
@@ -49,8 +48,7 @@ LARGEST_RATIO: Final = 2.0
 """Upper limit of one impact's log-likelihood ratio, so that a detection needs at least three impacts. A
 single outlier may be two strikes that were detected as one."""
 
-REMEMBERED: Final = 200
-"""Number of stored impacts, with which an estimate can restart."""
+REMEMBERED: Final = 200  # number of stored impacts, with which an estimate can restart
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)

@@ -34,12 +34,8 @@ if TYPE_CHECKING:
     BoolArray = NDArray[np.bool_]
 
 COMPONENTS: Final = 6  # linear and angular velocity
-
-STEP: Final = 1.1
-"""Ratio of neighbouring values of a coefficient that changes are detected with."""
-
-STEPS: Final = 14
-"""Values in each direction: from 0.26 to 3.8 times the configured coefficient."""
+STEP: Final = 1.1  # ratio of neighbouring values of a coefficient that changes are detected with
+STEPS: Final = 14  # values in each direction: from 0.26 to 3.8 times the configured coefficient
 
 
 class Parameter(Enum):
@@ -186,11 +182,8 @@ OUTLIER: Final = 16.8
 """Squared distance beyond which an impact counts less in an estimate although differences are normal: of 100
 such impacts, one is farther away. An outlier may be two strikes that were detected as one."""
 
-LEAST_KNOWN: Final = 1.0
-"""A coefficient with a larger standard deviation is not known."""
-
-REGIONS: Final = (0.5, 0.9, 0.99)
-"""Probabilities of the prediction regions."""
+LEAST_KNOWN: Final = 1.0  # a coefficient with a larger standard deviation is not known
+REGIONS: Final = (0.5, 0.9, 0.99)  # probabilities of the prediction regions
 
 
 def is_known(information: FloatArray) -> BoolArray:

@@ -45,8 +45,7 @@ if TYPE_CHECKING:
     from contact_dynamics.questions.uncertain_state import KnownState
     from contact_dynamics.validation import FloatArray
 
-LOOK_EVERY: Final = 0.2
-"""s of stamps between two searches for events."""
+LOOK_EVERY: Final = 0.2  # s of stamps between two searches for events
 
 SETTLED: Final = 0.25
 """s after an event, when later states no longer change it: a flight after an impact is fitted over 80 ms, and
@@ -55,8 +54,7 @@ found after 47 ms. A rest or a slide is also reported once it has lasted this lo
 SILENT: Final = 1.0
 """s without a state, after which all events before it are final. No state is out of order by more."""
 
-KEPT: Final = 3.0
-"""s of states that are kept. A longer flight, rest or slide is followed all the same."""
+KEPT: Final = 3.0  # s of states that are stored. Longer flights, rests and slides are followed nevertheless.
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, repr=False)

@@ -33,8 +33,7 @@ if TYPE_CHECKING:
     from contact_dynamics.monitoring.monitor import MonitoredEvent
     from contact_dynamics.world import World
 
-CHANGED: Final = 1
-"""Exit code: a change is detected, or a recording could not be read."""
+CHANGED: Final = 1  # exit code: a change is detected, or a recording could not be read
 
 
 def main(arguments: list[str]) -> int:

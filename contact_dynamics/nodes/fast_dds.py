@@ -31,8 +31,7 @@ from contact_dynamics.constants import NS_PER_S
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-FIRST_PORT: Final = 7400
-"""First port of domain 0."""
+FIRST_PORT: Final = 7400  # first port of domain 0
 
 PORTS_OF_DOMAIN: Final = 250
 
@@ -63,8 +62,7 @@ _IN_THIS_FOLDER: Final = "DEFAULT_FASTDDS_PROFILES.xml" if IS_VERSION_3 else "DE
 _ANNOUNCED_EVERY_S: Final = 0.5
 """s. 64 small messages a second to this machine, which take half a thousandth of a processor."""
 
-_ASKED_EVERY_S: Final = 0.1
-"""s. Only a writer some of whose messages are not confirmed asks."""
+_ASKED_EVERY_S: Final = 0.1  # s. Only writers with unconfirmed messages ask.
 
 FIRST_OFFSET: Final = 101
 """Ports count from the first one of the domain. Below are those that Fast DDS chooses for 45 participants."""

@@ -30,8 +30,7 @@ if TYPE_CHECKING:
     from rclpy.service import Service
     from rclpy.subscription import Subscription
 
-TAKE_EVERY_S: Final = 0.005
-"""s, shortest time between two rounds through all queues."""
+TAKE_EVERY_S: Final = 0.005  # s, shortest time between two rounds through all queues
 
 _WARN_EVERY_S: Final = 5.0
 

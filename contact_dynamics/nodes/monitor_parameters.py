@@ -11,8 +11,7 @@ from typing import Final
 from contact_dynamics.nodes.parameter_reader import DeclaredParameter
 from contact_dynamics.nodes.visualizer_parameters import VISUALIZER_PARAMETERS
 
-MONITOR_NAME: Final = "contact_dynamics_monitor"
-"""The name of the monitor's node."""
+MONITOR_NAME: Final = "contact_dynamics_monitor"  # the name of the monitor's node
 
 CALIBRATION: Final = "calibration"
 

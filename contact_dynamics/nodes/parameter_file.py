@@ -23,8 +23,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Sequence
     from pathlib import Path
 
-ANY_NODE: Final = "/**"
-"""The name of a section that is for every node."""
+ANY_NODE: Final = "/**"  # the name of a section that is for every node
 
 _VALUES: Final = "ros__parameters"
 _MERGE: Final = "<<"  # a key of YAML itself

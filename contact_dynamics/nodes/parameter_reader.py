@@ -21,8 +21,7 @@ if TYPE_CHECKING:
 
 T = TypeVar("T")
 
-NODE_NAME: Final = "contact_dynamics"
-"""The name of the server's node."""
+NODE_NAME: Final = "contact_dynamics"  # the name of the server's node
 
 
 class ConfigurationError(ContactDynamicsError):

@@ -38,8 +38,7 @@ if TYPE_CHECKING:
     from contact_dynamics.nodes.parameter_reader import ConfiguredTopic, DeclaredParameter
     from contact_dynamics.nodes.world_parameters import BodySources
 
-MEGABYTE: Final = 1_000_000
-"""Bytes of a megabyte."""
+MEGABYTE: Final = 1_000_000  # bytes of a megabyte
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -23,8 +23,7 @@ if TYPE_CHECKING:
 
     from rclpy.node import Node
 
-PARAMETERS: Final = "parameters"
-"""The key of the node's parameters, which are a JSON object by name."""
+PARAMETERS: Final = "parameters"  # the key of the node's parameters, which are a JSON object by name
 
 TOPICS: Final = "state_topics"
 """The key of the full names of the topics of states, which are a JSON object by parameter."""
@@ -92,8 +91,7 @@ def plain(value: Any) -> Any:
     return value if isinstance(value, (bool, int, float, str, type(None))) else list(value)
 
 
-CHANGES: Final = "/parameter_events"
-"""The topic of changes."""
+CHANGES: Final = "/parameter_events"  # the topic of changes
 
 CHANGE_TYPE: Final = "rcl_interfaces/msg/ParameterEvent"
 

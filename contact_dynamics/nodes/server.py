@@ -47,8 +47,7 @@ the service exists, if they overflow the socket of a client that a busy machine 
 _HANDED_OVER_WITHIN_S: Final = 0.1
 """s. Time for which a server that ends waits for requests that DDS has received and not delivered."""
 
-_REFUSES_FOR_S: Final = 3.0
-"""s. Longest time for which a server that ends rejects new requests."""
+_REFUSES_FOR_S: Final = 3.0  # s. Longest time for which a server that ends rejects new requests.
 
 
 class Server(ManagedNode):

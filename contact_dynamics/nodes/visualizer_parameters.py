@@ -18,8 +18,7 @@ if TYPE_CHECKING:
 
 MEGABYTE: Final = 10**6
 
-MOST: Final = 10**6
-"""Largest size of a file, MB, and largest number of files."""
+MOST: Final = 10**6  # largest size of a file, MB, and largest number of files
 
 _DECLARED: Final = (
     DeclaredParameter("server", "/contact_dynamics", "Full name of the server node whose answers are drawn."),

@@ -31,8 +31,7 @@ if TYPE_CHECKING:
 
     from contact_dynamics.questions.subject import Subject
 
-MAX_BODIES: Final = 32
-"""Most bodies in one question: as many as contacts may touch (`MAX_DYNAMIC_CONTACTS`)."""
+MAX_BODIES: Final = 32  # largest number of bodies in one question, as of contacts (`MAX_DYNAMIC_CONTACTS`)
 
 _APART: Final = "the states differ in time by {:.3g} ms, which matters if the bodies move"
 

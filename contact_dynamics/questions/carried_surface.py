@@ -35,8 +35,7 @@ ACCELERATION_WINDOW: Final = 0.05
 _LEAST_STATES: Final = 3
 """Number of states from which accelerations are estimated at least, over a longer time where necessary."""
 
-_SLOWEST_S: Final = 1.0
-"""Longest time that these may take, s."""
+_SLOWEST_S: Final = 1.0  # longest time that these may take, s
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)

@@ -78,8 +78,7 @@ takes some 50 ms for so many."""
 LEAST_PROBABILITY: Final = 0.01
 """Motions that are rarer by the noise of a state are left out of the probabilities."""
 
-IMPACT: Final = ""
-"""What stands instead of a mode in the probabilities where a contact approaches."""
+IMPACT: Final = ""  # the mode in the probabilities if a contact approaches
 
 _MOVING: Final = "contacts must have surfaces at rest in a plane of motion, got surfaces that move"
 

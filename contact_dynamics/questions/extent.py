@@ -29,11 +29,8 @@ MAX_INERTIA: Final = 1e30
 MAX_PUBLISHED_DISTANCE: Final = 1e12
 """m from the world's origin, almost seven times the distance to the Sun. Doubles resolve 0.1 mm there."""
 
-MAX_PUBLISHED_SPEED: Final = 1e5
-"""m/s, ten times what leaves the Earth."""
-
-MAX_PUBLISHED_SPIN: Final = 1e6
-"""rad/s, ten times the fastest turbines."""
+MAX_PUBLISHED_SPEED: Final = 1e5  # m/s, ten times what leaves the Earth
+MAX_PUBLISHED_SPIN: Final = 1e6  # rad/s, ten times the fastest turbines
 
 
 def check_believable(state: BodyState) -> None:

@@ -63,8 +63,7 @@ class PublishedState(Record):
         object.__setattr__(self, "fit_window", check_not_negative("fit_window", self.fit_window))
 
 
-NEWEST: Final = PublishedState()
-"""The newest published state."""
+NEWEST: Final = PublishedState()  # the newest published state
 
 StateSource: TypeAlias = "BodyState | UncertainState | PublishedState"
 """The sources of a body's state: a question contains the state, or refers to a published one."""

@@ -32,8 +32,7 @@ from contact_dynamics.tumbling import Trajectory
 from contact_dynamics.validation import FloatArray, check_positive, check_whole
 from contact_dynamics.world import Body
 
-STRIKES = 2
-"""How many next strikes the tree has, if no other number is asked for."""
+STRIKES = 2  # default number of next strikes in the tree
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, repr=False)

@@ -30,8 +30,7 @@ if TYPE_CHECKING:
 _PAIRS_AT_ONCE: Final = 100_000
 """Points times triangles whose distances are worked out together, in some 50 MB."""
 
-_MOST_TOLD: Final = 4
-"""Contacts off the shape's surface that have a warning each. More are counted in one."""
+_MOST_TOLD: Final = 4  # maximum number of contacts off the shape's surface with a warning each
 
 
 def contacts_of(

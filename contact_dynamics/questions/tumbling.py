@@ -49,8 +49,7 @@ if TYPE_CHECKING:
     from contact_dynamics.motion.integrated import ChosenMotion
     from contact_dynamics.rigid_body.body import MassProperties
 
-FLIPS: Final = 3
-"""An answer has this many of the next flips."""
+FLIPS: Final = 3  # number of next flips in an answer
 
 MAX_COVARIANCES: Final = 2000
 """Largest number of samples with covariances in one answer. More would stall the middleware."""

@@ -49,8 +49,7 @@ class UncertainState(Record):
         return self.state.stamp_ns
 
 
-KnownState: TypeAlias = "BodyState | UncertainState"
-"""A state, with its covariance where that is known."""
+KnownState: TypeAlias = "BodyState | UncertainState"  # a state, with its covariance if it is known
 
 
 def with_deviations(known: KnownState, deviations: Sequence[float]) -> KnownState:

@@ -26,8 +26,7 @@ MODES: Final = {  # the modes of `replay`
     PUBLISH: "publish the states over ROS, and optionally repeat the requests",
 }
 
-QUESTIONS: Final = ("landing", "impact", "modes")
-"""What can be asked of a recording that holds no questions."""
+QUESTIONS: Final = ("landing", "impact", "modes")  # predictions for recordings without requests
 
 DEFAULT_PORT: Final = 9876
 
