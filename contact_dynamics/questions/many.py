@@ -34,7 +34,7 @@ from contact_dynamics.world import Body
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
-MAX_STATES = MAX_CONTACTS  # Largest number of states in a question. Such a batch of impacts takes about a second.
+MAX_STATES = MAX_CONTACTS  # largest number of states in a question; such a batch of impacts takes about 1 s
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
