@@ -12,7 +12,7 @@ from contact_dynamics.calibration.calibrate import calibrate
 from contact_dynamics.calibration.plots import write_plots
 from contact_dynamics.calibration.report import content_of, report, server_parameters
 from contact_dynamics.errors import ContactDynamicsError, InvalidFieldError
-from contact_dynamics.evaluation.command import check_writable, run_on_recordings
+from contact_dynamics.evaluation.arguments import check_writable, run_on_recordings
 from contact_dynamics.evaluation.sources import find_sources
 from contact_dynamics.replay.progress import Progress
 

@@ -8,6 +8,6 @@ reads the model errors that a calibration has measured, with which regions are a
 
 `jobs` distributes many recordings over processes and stores their results. `result` contains the records of
 an evaluation and their file formats. `summary` groups the comparisons, and `significance` tests the
-difference of two evaluations. `report`, `plots` and `picture` display them. `arguments`, `command` and `run`
-implement the command line.
+difference of two evaluations. `report`, `plots` and `picture` display them. `arguments` and `run` implement
+the command line.
 """

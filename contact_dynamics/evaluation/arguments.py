@@ -1,13 +1,21 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The arguments of `contact-dynamics evaluate`. This file imports only what `--help` needs."""
+"""The arguments of `contact-dynamics evaluate`, and what it shares with `calibrate` and `monitor`.
+
+This file imports only what `--help` needs.
+"""
 
 from __future__ import annotations
 
 import argparse
+import sys
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final
+
+from contact_dynamics.errors import ContactDynamicsError
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from contact_dynamics.evaluation.settings import Law
 
 
@@ -162,3 +170,32 @@ def _count(text: str) -> int:
     if not text.isdigit() or int(text) < 1:
         raise argparse.ArgumentTypeError(f"must be a whole number >= 1, got {text!r}")
     return int(text)
+
+
+NOTHING: Final = 2  # exit code if no recording could be used, or an argument is invalid
+
+
+def run_on_recordings(
+    parser: argparse.ArgumentParser, arguments: list[str], work: Callable[[argparse.Namespace], int]
+) -> int:
+    """Parse the arguments, call ``work``, and return the exit code. Errors are printed."""
+    given = parser.parse_args(arguments)
+    if not given.recordings:  # not by argparse, so that a mistyped option is reported first
+        parser.error("at least one RECORDING is required")
+    try:
+        return work(given)
+    except (ContactDynamicsError, OSError) as error:
+        print(f"{parser.prog}: {error}", file=sys.stderr)
+        return NOTHING
+
+
+def check_writable(*files: Path | None) -> None:
+    """Check that the output files can be written, before the evaluation starts.
+
+    Raises:
+        OSError: a file cannot be written.
+    """
+    for path in files:
+        if path is not None:
+            with path.open("ab"):
+                pass

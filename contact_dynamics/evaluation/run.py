@@ -7,8 +7,7 @@ import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
-from contact_dynamics.evaluation.arguments import evaluate_parser
-from contact_dynamics.evaluation.command import NOTHING, check_writable, run_on_recordings
+from contact_dynamics.evaluation.arguments import NOTHING, check_writable, evaluate_parser, run_on_recordings
 from contact_dynamics.evaluation.jobs import (
     Job,
     ResultsFolder,

@@ -8,6 +8,7 @@ for its log.
 
 from __future__ import annotations
 
+import math
 import time
 from importlib import import_module
 from pathlib import Path
@@ -17,12 +18,11 @@ from rclpy.serialization import serialize_message
 
 from contact_dynamics.evaluation.log_states import informed_by
 from contact_dynamics.evaluation.model_error import ModelError, model_error_of
-from contact_dynamics.monitoring.event_message import TYPE, event_to_msg
 from contact_dynamics.monitoring.monitor import LOOK_EVERY, SILENT, Monitor, MonitorSettings
-from contact_dynamics.monitoring.report import Summary, estimates_in_words
+from contact_dynamics.monitoring.report import Summary, estimates_in_words, line_of
 from contact_dynamics.nodes.arguments import live_monitor_parser
 from contact_dynamics.nodes.managed_node import ManagedNode
-from contact_dynamics.nodes.monitor_parameters import CALIBRATION, MONITOR_NAME, MONITOR_PARAMETERS
+from contact_dynamics.nodes.other_parameters import CALIBRATION, MONITOR_NAME, MONITOR_PARAMETERS
 from contact_dynamics.nodes.parameter_reader import ConfigurationError
 from contact_dynamics.nodes.receiving import Receiving
 from contact_dynamics.nodes.running import run_node
@@ -32,11 +32,14 @@ from contact_dynamics.questions.services import SERVICES
 from contact_dynamics.questions.state_store import StateStore
 from contact_dynamics.recording.cdr import cut_to_its_end
 from contact_dynamics.recording.definitions import find_definition
+from contact_dynamics.replay.timeline import MONITOR_EVENT
 from contact_dynamics_interfaces.msg import MonitorEvent
+from msg_adapters.stamps import stamp_to_msg
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping, Sequence
 
+    from contact_dynamics.monitoring.evidence import Parameter
     from contact_dynamics.monitoring.monitor import MonitoredEvent
     from contact_dynamics.nodes.inbox import InboxNode, Taken
     from contact_dynamics.nodes.parameter_reader import ParameterSource
@@ -45,46 +48,74 @@ if TYPE_CHECKING:
     from contact_dynamics.questions.uncertain_state import KnownState
 
 
+def event_to_msg(event: MonitoredEvent, *, frame_id: str) -> MonitorEvent:
+    """Return an event as a message in the world frame ``frame_id``."""
+    msg = MonitorEvent(
+        body_name=event.body,
+        surface_name=event.surface,
+        kind=event.kind.value,
+        text=line_of(event),
+        region=round(100.0 * (event.smallest_region or 0.0)),
+        probability=_or_nan(event.probability),
+        time_error=_or_nan(event.time_error),
+        predicted_mode=event.predicted_mode,
+        measured_mode=event.measured_mode,
+        problem=event.problem,
+        explained_by=_name(event.explained_by),
+    )
+    msg.header.frame_id = frame_id
+    stamp_to_msg(event.stamp_ns, into=msg.header.stamp)
+    msg.restitution, msg.friction = event.impact_values.tolist()
+    msg.restitution_std, msg.friction_std = event.impact_stds.tolist()
+    report = event.surface_report
+    values, stds = ([math.nan] * 2,) * 2 if report is None else (report.values.tolist(), report.stds.tolist())
+    msg.estimated_restitution, msg.estimated_friction = values
+    msg.estimated_restitution_std, msg.estimated_friction_std = stds
+    if report is not None:
+        msg.impacts, msg.changed, msg.alarm = report.impacts, _name(report.changed), report.is_new
+    return msg
+
+
+def _or_nan(number: float | None) -> float:
+    return math.nan if number is None else number
+
+
+def _name(parameter: Parameter | None) -> str:
+    return "" if parameter is None else parameter.value
+
+
 class Monitoring(Receiving):
     """Receives states, publishes events and writes the log of both, for a node."""
 
     def __init__(
         self, node: InboxNode, parameters: ServerParameters, *, run: Mapping[str, str], error: ModelError
     ) -> None:
-        """Begin the log and subscribe; nothing is monitored for now.
-
-        Args:
-            node: the node.
-            parameters: how it is configured.
-            run: what the log says of the run.
-            error: model errors of predictions.
+        """Begin the log and subscribe, without monitoring; ``error`` is the model error of predictions.
 
         Raises:
-            ConfigurationError: a source or the log's folder is not there.
+            ConfigurationError: a source or the log's folder does not exist (see `Receiving`).
         """
         import_module("scipy.stats")  # with what answers: imported at the first event, it would delay states
         for service in SERVICES:
             service.prepare()
         self._is_active = False
         self._came_ns = 0
-        self._came: dict[
-            str, float
-        ] = {}  # s, when the last state of a body came whose events are not settled
+        self._came: dict[str, float] = {}  # s, arrival of the last state of each body with unsettled events
         self._summary = Summary()
         self._monitor = Monitor(informed_by(parameters), MonitorSettings(error=error))
         super().__init__(node, parameters, run=run, states=_Watched(self._take))
         self._publisher = node.create_publisher(MonitorEvent, "~/events", EVENT_QOS)
-        self._definition = find_definition(TYPE)
-        self._log.add_topic(self._publisher.topic_name, TYPE, EVENT_QOS)
+        self._definition = find_definition(MONITOR_EVENT)
+        self._log.add_topic(self._publisher.topic_name, MONITOR_EVENT, EVENT_QOS)
         self._begin()
 
     def activate(self, *, is_active: bool) -> None:
-        """Monitor from now on, or no more."""
+        """Start or stop monitoring."""
         self._is_active = is_active
         self._tell(self._monitor.finish())
 
     def attend(self) -> None:
-        """Publish the last events of bodies that fell silent, and look around once a second."""
+        """Publish the last events of silent bodies, and check topics once a second."""
         now = time.monotonic()
         for body_name in [name for name, came in self._came.items() if now - came > SILENT + LOOK_EVERY]:
             del self._came[body_name]
@@ -98,13 +129,13 @@ class Monitoring(Receiving):
         self._monitor.informed = informed_by(parameters)
 
     def close(self) -> str:
-        """Publish the last events, and finish the log; return in words where that is."""
+        """Publish the last events, and finish the log; return a text about it."""
         self._node.take_messages()
         self._tell(self._monitor.finish())
         return super().close()
 
     def remove(self) -> None:
-        """Remove the publisher and everything else that this object added to the node."""
+        """Remove the publisher, subscriptions and other publishers from the node."""
         self._node.destroy_publisher(self._publisher)
         super().remove()
 
@@ -125,7 +156,7 @@ class Monitoring(Receiving):
         for event in events:
             self._summary.add(event)
             msg = event_to_msg(event, frame_id=self._core.parameters.world_frame)
-            data = cut_to_its_end(serialize_message(msg), type_name=TYPE, definition=self._definition.text)
+            data = cut_to_its_end(serialize_message(msg), self._definition)
             self._publisher.publish(data)
             self._log.record(self._publisher.topic_name, data, log_time_ns=time.time_ns())
             if msg.alarm:
@@ -147,21 +178,21 @@ class Monitoring(Receiving):
 
 
 class _Watched(StateStore):
-    """Hands each state on that it keeps."""
+    """A store that passes on each state that it stores."""
 
     def __init__(self, take: Callable[[str, KnownState], None]) -> None:
         super().__init__(history=0.0, timeout=0.0)
         self._take = take
 
     def add(self, body_name: str, state: KnownState, *, now_ns: int | None = None) -> None:
-        """Keep a state and hand it on."""
+        """Store a state, and pass it on."""
         super().add(body_name, state, now_ns=now_ns)
         self._take(body_name, state)
 
     def add_unread(
         self, body_name: str, stamp_ns: int, read: ReadState, *, now_ns: int | None = None
     ) -> None:
-        """Keep a state, and read and hand it on."""
+        """Store a state, decode it, and pass it on."""
         super().add_unread(body_name, stamp_ns, read, now_ns=now_ns)
         state = read()
         if state is not None:
@@ -172,7 +203,7 @@ class LiveMonitor(ManagedNode):
     """The node `contact_dynamics_monitor`."""
 
     def __init__(self, *, ros_arguments: Sequence[str] = (), **node_options: Any) -> None:
-        """Read the parameters, and begin where ``autostart`` says so (see `ManagedNode`)."""
+        """Read the parameters, and start if ``autostart`` is set (see `ManagedNode`)."""
         super().__init__(MONITOR_NAME, own=MONITOR_PARAMETERS, ros_arguments=ros_arguments, **node_options)
 
     def _read(self, source: ParameterSource) -> ServerParameters:
@@ -182,7 +213,7 @@ class LiveMonitor(ManagedNode):
         return parameters
 
     def make_work(self, configuration: ServerParameters, run: Mapping[str, str]) -> Monitoring:
-        """Return what monitors while the node is active."""
+        """Return the object that monitors while the node is active."""
         if not any(body.sources for body in configuration.sources):
             message = "body.NAME.odometry_topic, or another topic of states, is required for one body"
             raise ConfigurationError(message)

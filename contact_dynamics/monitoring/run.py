@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from contact_dynamics.errors import ContactDynamicsError
-from contact_dynamics.evaluation.command import NOTHING, check_writable, run_on_recordings
+from contact_dynamics.evaluation.arguments import NOTHING, check_writable, run_on_recordings
 from contact_dynamics.evaluation.log_states import parameters_of
 from contact_dynamics.evaluation.model_error import ModelError, model_error_of
 from contact_dynamics.evaluation.sources import find_sources

@@ -12,10 +12,13 @@ import textwrap
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from contact_dynamics.nodes.monitor_parameters import MONITOR_PARAMETERS, PARAMETERS_OF_OTHERS
+from contact_dynamics.nodes.other_parameters import (
+    MONITOR_PARAMETERS,
+    PARAMETERS_OF_OTHERS,
+    VISUALIZER_PARAMETERS,
+)
 from contact_dynamics.nodes.parameter_file import files_given
 from contact_dynamics.nodes.parameters import described_server_parameters
-from contact_dynamics.nodes.visualizer_parameters import VISUALIZER_PARAMETERS
 
 if TYPE_CHECKING:
     from collections.abc import Iterable

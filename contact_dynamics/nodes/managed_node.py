@@ -18,8 +18,8 @@ from rclpy.parameter import Parameter
 
 from contact_dynamics.errors import ConcaveShapeWarning, ContactDynamicsError
 from contact_dynamics.nodes.inbox import InboxNode
-from contact_dynamics.nodes.monitor_parameters import PARAMETERS_OF_OTHERS
 from contact_dynamics.nodes.node_parameters import NodeParameters, refuse_lost_sections
+from contact_dynamics.nodes.other_parameters import PARAMETERS_OF_OTHERS
 from contact_dynamics.nodes.parameter_reader import ParameterSource, is_of_ros
 from contact_dynamics.nodes.parameters import check_change, read_server_parameters
 from contact_dynamics.nodes.run_record import event_of_change, plain, run_record

@@ -16,7 +16,7 @@ from itertools import pairwise
 from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
 from contact_dynamics.nodes.links import with_links_read
-from contact_dynamics.nodes.monitor_parameters import PARAMETERS_OF_OTHERS
+from contact_dynamics.nodes.other_parameters import PARAMETERS_OF_OTHERS
 from contact_dynamics.nodes.parameter_reader import NODE_NAME, ConfigurationError, ParameterSource
 
 if TYPE_CHECKING:

@@ -12,7 +12,7 @@ import platform
 from importlib.metadata import version
 from typing import TYPE_CHECKING, Any, Final, Protocol
 
-from contact_dynamics.nodes.monitor_parameters import PARAMETERS_OF_OTHERS
+from contact_dynamics.nodes.other_parameters import PARAMETERS_OF_OTHERS
 from contact_dynamics.nodes.parameter_reader import ConfigurationError, ParameterSource
 from contact_dynamics.recording.cdr import cut_to_its_end
 from contact_dynamics.recording.definitions import find_definition
@@ -158,5 +158,4 @@ def event_of_change(node: Node, before: Mapping[str, Any], after: Mapping[str, A
     )
     if not (event.new_parameters or event.changed_parameters or event.deleted_parameters):
         return None
-    definition = find_definition(CHANGE_TYPE).text
-    return cut_to_its_end(serialize_message(event), type_name=CHANGE_TYPE, definition=definition)
+    return cut_to_its_end(serialize_message(event), find_definition(CHANGE_TYPE))

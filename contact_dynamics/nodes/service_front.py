@@ -278,5 +278,4 @@ class EventBytes:
         event.info.client_gid = list(call.client)
         event.info.sequence_number = call.sequence_number
         stamp_to_msg(stamp_ns, into=event.info.stamp)
-        data = serialize_message(event)
-        return cut_to_its_end(data, type_name=self._definition.type_name, definition=self._definition.text)
+        return cut_to_its_end(serialize_message(event), self._definition)

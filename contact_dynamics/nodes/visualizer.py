@@ -26,8 +26,8 @@ from rclpy.serialization import deserialize_message
 
 from contact_dynamics.nodes.arguments import visualizer_parser
 from contact_dynamics.nodes.inbox import InboxNode
-from contact_dynamics.nodes.monitor_parameters import PARAMETERS_OF_OTHERS
 from contact_dynamics.nodes.node_parameters import NodeParameters, refuse_lost_sections
+from contact_dynamics.nodes.other_parameters import PARAMETERS_OF_OTHERS, read_visualizer_parameters
 from contact_dynamics.nodes.parameter_reader import ConfigurationError, ParameterSource
 from contact_dynamics.nodes.parameters import check_change, read_server_parameters
 from contact_dynamics.nodes.run_record import CHANGES, changed_values, plain
@@ -35,7 +35,6 @@ from contact_dynamics.nodes.running import run_node
 from contact_dynamics.nodes.server_core import ServerCore
 from contact_dynamics.nodes.state_subscriptions import StateTopic
 from contact_dynamics.nodes.topic_faults import TopicFaults
-from contact_dynamics.nodes.visualizer_parameters import read_visualizer_parameters
 from contact_dynamics.questions.services import SERVICES
 from contact_dynamics.questions.state_store import StateStore
 from contact_dynamics.questions.uncertain_state import state_of

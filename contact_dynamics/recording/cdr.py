@@ -40,6 +40,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from contact_dynamics.recording.bag_reader import LoggedMessage
+    from contact_dynamics.recording.definitions import TypeDefinition
 
     Build: TypeAlias = Callable[[list[Any]], Any]
     Read: TypeAlias = Callable[[bytes, int, list[Any]], int]
@@ -123,12 +124,12 @@ def decode_columns(messages: Sequence[LoggedMessage]) -> tuple[Message, NDArray[
     return plan.build(rows), np.array(places)[alike]
 
 
-def cut_to_its_end(data: bytes, *, type_name: str, definition: str) -> bytes:
-    """Return a serialised message without the bytes after its end; ``definition`` is ros2msg text.
+def cut_to_its_end(data: bytes, definition: TypeDefinition) -> bytes:
+    """Return a serialised message without the bytes after its end.
 
     ``rclpy.serialization.serialize_message`` appends some bytes of uninitialised memory.
     """
-    _, end = _message_and_end(data, _type_of(type_name, definition))
+    _, end = _message_and_end(data, _type_of(definition.type_name, definition.text))
     return data[:end]
 
 

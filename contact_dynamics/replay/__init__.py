@@ -10,5 +10,6 @@ separate configuration and requests that are made on replay.
 
 `of_log` configures the server of a log, or rejects a log whose services have different fields, and `again`
 recomputes that server's responses. `timeline` orders requests and states by their arrival and extracts both
-from service events. `arguments`, `run` and `progress` are the command.
+from service events. `arguments`, `run` and `progress` are the command. `recover` is the command that repairs
+logs.
 """

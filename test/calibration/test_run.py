@@ -14,7 +14,7 @@ from contact_dynamics.calibration import calibrate
 from contact_dynamics.calibration.arguments import calibrate_parser
 from contact_dynamics.calibration.report import content_of
 from contact_dynamics.calibration.run import SOMETHING_OPEN, main
-from contact_dynamics.evaluation.command import NOTHING
+from contact_dynamics.evaluation.arguments import NOTHING
 from contact_dynamics.measured.read_toss import DEFAULT_RECORDING
 from contact_dynamics.nodes.parameter_file import ParameterFile
 from contact_dynamics.nodes.parameters import read_server_parameters

@@ -15,7 +15,7 @@ from rosbags.highlevel import AnyReader
 
 from contact_dynamics.command_line import main
 from contact_dynamics.recording import BagReader, DamagedLogWarning, LogExistsError
-from contact_dynamics.recording.recovery import recover
+from contact_dynamics.replay.recover import recover
 from message_words import says
 
 

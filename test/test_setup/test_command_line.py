@@ -13,9 +13,8 @@ import numpy as np
 import pytest
 
 from contact_dynamics.command_line import BROKEN_PIPE, INTERRUPTED, VERBS, main
-from contact_dynamics.nodes.monitor_parameters import MONITOR_PARAMETERS
+from contact_dynamics.nodes.other_parameters import MONITOR_PARAMETERS, VISUALIZER_PARAMETERS
 from contact_dynamics.nodes.parameters import described_server_parameters
-from contact_dynamics.nodes.visualizer_parameters import VISUALIZER_PARAMETERS
 from contact_dynamics.recording import BagWriter
 from test_setup.programs import ROOT, run
 

@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What the visualizer is configured with besides the server's parameters (`config/visualizer.yaml`).
+"""The parameters of the visualizer and of the monitor besides the server's.
 
-The server knows these parameters too, as one file may configure both. So this file does not load rerun.
+They are in `config/visualizer.yaml` and `config/monitor.yaml`. One file may configure all nodes, so that the
+server accepts these parameters too. This file therefore does not import rerun.
 """
 
 from __future__ import annotations
@@ -64,14 +65,27 @@ _DECLARED: Final = (
 VISUALIZER_PARAMETERS: Final = {each.name: each for each in _DECLARED}
 """The parameters that the visualizer has besides the server's."""
 
+MONITOR_NAME: Final = "contact_dynamics_monitor"  # the name of the monitor's node
+CALIBRATION: Final = "calibration"
+
+MONITOR_PARAMETERS: Final = {
+    CALIBRATION: DeclaredParameter(
+        CALIBRATION, "", "Output file of calibrate --json, whose model errors widen the prediction regions."
+    )
+}
+"""The parameters that the monitor has besides the server's."""
+
+PARAMETERS_OF_OTHERS: Final = {**VISUALIZER_PARAMETERS, **MONITOR_PARAMETERS}
+"""The parameters that a file of the server may also have."""
+
 
 class VisualizerParameters(NamedTuple):
-    """What the visualizer is configured with besides the server's parameters."""
+    """The configuration of the visualizer besides the server's parameters."""
 
     server: str  # its full name
     monitor: str  # its full name
     surface_side: float  # m
-    predictions: int  # the newest of a body that are in view
+    predictions: int  # number of latest predictions in view for a body
     sinks: Sinks
 
 
