@@ -56,7 +56,6 @@ CHAPTERS = (
     "command_line",
     "__main__",
 )
-PHYSICS = CHAPTERS[: CHAPTERS.index("questions")]
 WITHOUT_ROS = CHAPTERS[: CHAPTERS.index("msg_adapters")]
 SIDE_BY_SIDE = {("impact", "contact_modes")}
 """Chapters of which neither needs the other."""

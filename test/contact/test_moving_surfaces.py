@@ -41,8 +41,6 @@ FEET = cd.find_contacts(CRATE, AT_REST, BELT)
 FOOT = cd.PlanarContact(
     r=(0.0, -0.3), normal=(0.0, 1.0), friction=0.5, restitution=0.3, surface_velocity=(1, 0)
 )
-PLANAR = cd.PlanarBody(mass=2.0, inertia=0.1)
-DOWN = cd.PlanarVelocity(v=(0.0, -1.0), w=0.0)
 
 
 def carried(surface: cd.Surface, point: np.ndarray, seconds: float) -> np.ndarray:

@@ -26,7 +26,6 @@ from diagrams.marks_of import marks_of
 BODY = PlanarBody(mass=1.0, inertia=0.25)
 RHO = BODY.radius_of_gyration
 AT_REST = PlanarVelocity(v=(0.0, 0.0), w=0.0)
-TURNING = PlanarVelocity(v=(0.0, 0.0), w=3.0)
 ON_FLOOR = [PlanarContact(r=(x, -0.4), normal=(0.0, 1.0), friction=0.8) for x in (-0.9, 0.3)]
 ON_WALL = [PlanarContact(r=(0.6, y), normal=(-1.0, 0.0), friction=0.8) for y in (-0.1, 0.5)]
 TRAY = [*ON_FLOOR, *ON_WALL]

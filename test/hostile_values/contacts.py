@@ -58,8 +58,6 @@ from hostile_values.shared import (
     Calls,
 )
 
-CURVED = Curvatures(along=[1.0], across=[2.0], directions_W=[[1.0, 0.0, 0.0]])
-
 CALLS_WITH_CONTACTS: Calls = {
     "Contact": (Contact, TOUCH),
     "ContactSet": (ContactSet, CORNERS),

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Random questions and answers about contact modes, and their parts."""
+"""Random answers about contact modes, and their parts."""
 
 from __future__ import annotations
 
@@ -28,10 +28,8 @@ from contact_dynamics.contact_modes.spatial.wrench_sets import SpatialWrenchSet
 from contact_dynamics.questions import (
     BodiesContactModeAnswer,
     ContactModeAnswer,
-    ContactModeQuestion,
     NamedState,
     Problem,
-    PublishedState,
     SettledImpact,
 )
 from message_values.impact import resolved_impacts
@@ -39,12 +37,9 @@ from message_values.shared import (
     NAMES,
     NO_OFFSET,
     arrays,
-    bodies,
     contact_sets,
     flags,
-    gravities,
     indices,
-    known_states,
     not_negative,
     numbers,
     odd_numbers,
@@ -238,40 +233,4 @@ def bodies_contact_mode_answers(draw: st.DrawFn) -> BodiesContactModeAnswer:
         undecided_modes=draw(st.lists(texts, max_size=2).map(tuple)),
         velocity_tolerance=draw(positive),
         warnings=draw(warnings),
-    )
-
-
-@st.composite
-def contact_mode_questions(draw: st.DrawFn) -> ContactModeQuestion:
-    """The questions ask for each option or not, without the fields that play no part."""
-    problem, contacts = draw(st.sampled_from(Problem)), draw(some(contact_sets()))
-    uncertainty, geometry_margins = draw(uncertainties()), draw(flags)
-    may_be_planar = problem is Problem.PLANAR or (
-        problem is Problem.AUTOMATIC
-        and not (geometry_margins or np.any(uncertainty.points) or np.any(uncertainty.normals))
-    )
-    finds_or_mirrors = contacts is None or problem is not Problem.SPATIAL
-    margins, statics = draw(flags), draw(flags)
-    newest = st.builds(PublishedState, stamp_ns=some(st.integers(0, 10**18)))
-    return ContactModeQuestion(
-        body=draw(bodies()),
-        state=draw(st.one_of(newest, known_states())),
-        contacts=contacts,
-        force_W=draw(arrays(3)),
-        torque_W=draw(arrays(3)),
-        gravity_W=draw(gravities),
-        problem=problem,
-        plane=draw(planes) if may_be_planar else None,
-        out_of_plane_tolerance=draw(some(not_negative)) if may_be_planar else None,
-        velocity_tolerance=draw(some(not_negative)),
-        distance_tolerance=draw(some(not_negative)) if finds_or_mirrors else None,
-        friction_facets=None if problem is Problem.PLANAR else draw(st.sampled_from([None, 3, 8, 32])),
-        margin_length=draw(some(positive)) if margins or statics else None,
-        include_margins=margins,
-        include_wrenches=draw(flags),
-        include_statics=statics,
-        include_impact=draw(flags),
-        uncertainty=uncertainty,
-        include_geometry_margins=geometry_margins,
-        include_probabilities=draw(flags),
     )

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Random questions and answers about impacts, and their parts."""
+"""Random answers about impacts, and their parts."""
 
 from __future__ import annotations
 
@@ -21,27 +21,20 @@ from contact_dynamics.impact import (
 )
 from contact_dynamics.questions import (
     ImpactAnswer,
-    ImpactQuestion,
-    InTime,
     NamedState,
     Problem,
 )
-from contact_dynamics.questions.subject import NEWEST
 from message_values.shared import (
     NAMES,
     NO_OFFSET,
     arrays,
-    bodies,
     contact_sets,
     fits,
     flags,
     indices,
-    known_states,
-    not_negative,
     odd_numbers,
     planes,
     positive,
-    published,
     some,
     states,
     tuples_of,
@@ -139,35 +132,4 @@ def impact_answers(draw: st.DrawFn, p_FB_F: np.ndarray = NO_OFFSET) -> ImpactAns
         out_of_plane=draw(odd_numbers),
         velocity_tolerance=draw(positive),
         distance_tolerance=draw(positive),
-    )
-
-
-@st.composite
-def impact_questions(draw: st.DrawFn) -> ImpactQuestion:
-    """The questions are about one body and two, by all laws, without the fields that play no part."""
-    problem, contacts = draw(st.sampled_from(Problem)), draw(some(contact_sets()))
-    is_planar, state = problem is Problem.PLANAR, draw(st.one_of(published, known_states()))
-    other = draw(some(bodies()))
-    other_state = draw(known_states()) if other is not None else NEWEST
-    in_time = st.builds(
-        InTime, strike_window=positive, max_strikes=st.integers(1, 2**31 - 1), hold_step=some(positive)
-    )
-    law = draw(st.one_of(st.sampled_from(SeveralContactsLaw), in_time))
-    finds_or_mirrors = contacts is None or is_planar or isinstance(law, InTime)
-    return ImpactQuestion(
-        body=draw(bodies()),
-        state=state,
-        other=other,
-        other_state=other_state,
-        contacts=contacts,
-        horizon=draw(some(not_negative)) if contacts is None else None,
-        restitution_law=draw(st.sampled_from(RestitutionLaw)),
-        several_contacts_law=law,
-        include_orders=draw(flags),
-        include_covariance=draw(flags),
-        problem=problem,
-        plane=draw(planes) if is_planar else None,
-        out_of_plane_tolerance=draw(some(not_negative)) if is_planar else None,
-        velocity_tolerance=draw(some(not_negative)),
-        distance_tolerance=draw(some(not_negative)) if finds_or_mirrors else None,
     )

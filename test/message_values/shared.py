@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Random values that the questions and answers of every chapter are made of, and whether two are the same."""
+"""Random values that the answers of every chapter are made of, and whether two are the same."""
 
 from __future__ import annotations
 
@@ -14,9 +14,8 @@ from hypothesis import strategies as st
 from contact_dynamics import Body, BodyState, ContactSet, MassProperties, World
 from contact_dynamics.contact.curvature import alike
 from contact_dynamics.plane import PlaneOfMotion
-from contact_dynamics.questions import FitQuality, PublishedState, UncertainState
+from contact_dynamics.questions import FitQuality
 from contact_dynamics.questions.many import ManyStates
-from contact_dynamics.questions.subject import changed_body
 from contact_dynamics.tumbling import Trajectory
 from contact_dynamics.world import box_vertices
 
@@ -113,16 +112,6 @@ states = st.builds(
 
 
 @st.composite
-def known_states(draw: st.DrawFn) -> BodyState | UncertainState:
-    """States with a covariance and without."""
-    state = draw(states)
-    if draw(flags):
-        return state
-    root = draw(arrays(12, 12))
-    return UncertainState(state=state, covariance=root @ root.T)
-
-
-@st.composite
 def contact_sets(draw: st.DrawFn, count: int | None = None) -> ContactSet:
     """Up to three contacts, with names and curvatures or without."""
     n = draw(st.integers(0, 3)) if count is None else count
@@ -156,21 +145,6 @@ fits = st.builds(
     FitQuality, count=st.integers(1, 1000), position_residual=positive, orientation_residual=positive
 )
 planes = some(st.builds(PlaneOfMotion, normal_W=unit_vectors()))
-
-
-@st.composite
-def bodies(draw: st.DrawFn) -> Body:
-    """Known ones, known ones of another mass, and unknown ones without name and shape."""
-    known = draw(st.sampled_from([BRICK, BAT]))
-    mass_properties = MassProperties(mass=draw(positive), I_B=draw(positive) * np.eye(3))
-    described = Body(name="", mass_properties=mass_properties)
-    return draw(st.sampled_from([known, changed_body(known, mass_properties, NO_OFFSET), described]))
-
-
-published = st.builds(
-    PublishedState, stamp_ns=some(st.integers(0, 10**18)), fit_window=st.one_of(st.just(0.0), positive)
-)
-gravities = st.sampled_from([None, np.zeros(3)])
 
 
 @st.composite

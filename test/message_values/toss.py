@@ -1,13 +1,13 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Random questions and answers about tosses, and their parts."""
+"""Random answers about tosses, and their parts."""
 
 from __future__ import annotations
 
 import numpy as np
 from hypothesis import strategies as st
 
-from contact_dynamics.impact import ImpactOutcome, RestitutionLaw, SeveralContactsLaw
-from contact_dynamics.questions import TossAnswer, TossPath, TossQuestion, TossSampling
+from contact_dynamics.impact import ImpactOutcome
+from contact_dynamics.questions import TossAnswer, TossPath
 from contact_dynamics.toss import (
     Branch,
     BranchKind,
@@ -20,7 +20,6 @@ from contact_dynamics.toss import (
     TossEnergy,
     TossEvent,
     TossEventKind,
-    TossUncertainty,
     Undecided,
     UndecidedReason,
 )
@@ -28,16 +27,11 @@ from message_values.shared import (
     NAMES,
     NO_OFFSET,
     arrays,
-    bodies,
     fits,
     flags,
     indices,
-    known_states,
     many_states,
-    not_negative,
     numbers,
-    positive,
-    published,
     some,
     states,
     texts,
@@ -152,39 +146,4 @@ def toss_answers(draw: st.DrawFn) -> TossAnswer:
         alternatives=draw(tuples_of(toss_paths(), draw(st.integers(0, 1)))),
         all_followed=draw(flags),
         distribution=draw(some(toss_distributions())),
-    )
-
-
-@st.composite
-def toss_questions(draw: st.DrawFn) -> TossQuestion:
-    """From all sources of states, by all laws, with samples and without."""
-    root = draw(arrays(6, 6))
-    uncertainty = st.builds(
-        TossUncertainty,
-        covariance=st.sampled_from([np.zeros((0, 0)), root @ root.T]),
-        velocity=not_negative,
-        spin=not_negative,
-        height=not_negative,
-        lasting_factors=st.just([1.5]),
-        lasting_factor_stds=st.sampled_from([(), [0.1]]),
-    )
-    sampling = st.builds(
-        TossSampling,
-        count=st.integers(1, 2000),
-        strikes=some(st.integers(1, 10)),
-        to_rest=flags,
-        seed=st.integers(0, 2**32 - 1),
-        uncertainty=uncertainty,
-    )
-    sampled = draw(some(sampling))
-    return TossQuestion(
-        body=draw(bodies()),
-        state=draw(st.one_of(published, known_states())),
-        restitution_law=draw(st.sampled_from(RestitutionLaw)),
-        several_contacts_law=draw(st.sampled_from(SeveralContactsLaw)),
-        horizon=draw(some(positive)),
-        rate=draw(some(positive)),
-        max_alternatives=draw(some(indices)),
-        sampling=sampled,
-        lasting_factors=[1.5] if sampled or draw(flags) else [],
     )

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Random questions and answers about tumbling, and their parts."""
+"""Random answers about tumbling, and their parts."""
 
 from __future__ import annotations
 
@@ -9,18 +9,11 @@ import numpy as np
 from hypothesis import strategies as st
 
 from contact_dynamics.motion.covariance import CarriedCovariance, PropagationMethod, orientation_deviations
-from contact_dynamics.motion.forces import ConstantWrench, Drag, WrenchAxes
 from contact_dynamics.motion.integrated import Method
 from contact_dynamics.questions import (
-    AtRate,
-    AtStamps,
-    AtTimes,
     Event,
     EventKind,
     TumblingAnswer,
-    TumblingQuestion,
-    UntilContact,
-    UntilPlane,
 )
 from contact_dynamics.tumbling import Flips, Poinsot, Regime, RollingCurves
 from contact_dynamics.tumbling.poinsot_construction import semi_axes
@@ -28,23 +21,16 @@ from message_values.shared import (
     NAMES,
     NO_OFFSET,
     arrays,
-    bodies,
     fits,
     flags,
-    gravities,
-    indices,
-    known_states,
-    not_negative,
     numbers,
     odd_numbers,
     positive,
-    published,
     some,
     states,
     texts,
     trajectories,
     tuples_of,
-    unit_vectors,
     warnings,
 )
 
@@ -119,40 +105,4 @@ def tumbling_answers(draw: st.DrawFn, p_FB_F: np.ndarray = NO_OFFSET) -> Tumblin
         flips=flips,
         curves=curves,
         warnings=draw(warnings),
-    )
-
-
-sampled = st.one_of(
-    st.builds(AtTimes, times=st.lists(st.floats(0.0, 9.0), min_size=1, max_size=3).map(sorted)),
-    st.builds(AtStamps, stamps_ns=st.lists(st.integers(0, 10**18), min_size=1, max_size=3).map(sorted)),
-    st.builds(AtRate, rate=some(positive), duration=some(not_negative)),
-    st.builds(UntilContact, rate=some(positive), duration=some(not_negative)),
-    st.builds(
-        UntilPlane,
-        rate=some(positive),
-        duration=some(not_negative),
-        plane_point=arrays(3),
-        plane_normal=unit_vectors(),
-        body_point=arrays(3),
-    ),
-)
-
-
-@st.composite
-def tumbling_questions(draw: st.DrawFn) -> TumblingQuestion:
-    """From all sources of states, at all kinds of times, with and without forces."""
-    twisted = draw(flags)
-    return TumblingQuestion(
-        body=draw(bodies()),
-        state=draw(st.one_of(published, known_states())),
-        sampling=draw(sampled),
-        gravity_W=draw(gravities),
-        wrench=ConstantWrench(
-            force=draw(arrays(3, of=positive)),
-            torque=draw(arrays(3, of=positive)) if twisted else np.zeros(3),
-            axes=draw(st.sampled_from(WrenchAxes)),
-        ),
-        drag=draw(st.builds(Drag, linear=positive, quadratic_angular=positive if twisted else st.just(0.0))),
-        include_covariance=draw(flags),
-        curve_points=0 if twisted else draw(indices),
     )

@@ -10,6 +10,7 @@ import numpy as np
 from hypothesis import strategies as st
 
 from contact_dynamics.contact import ContactSet
+from contact_dynamics.contact.uncertainty import EXACT_CONTACTS
 from contact_dynamics.impact import RestitutionLaw, SeveralContactsLaw
 from contact_dynamics.motion import ConstantWrench, Drag, WrenchAxes
 from contact_dynamics.plane import PlaneOfMotion
@@ -38,7 +39,6 @@ from contact_dynamics.rigid_body import BodyState, MassProperties
 from contact_dynamics.shapes import ConvexShape, Obstacle
 from contact_dynamics.toss import TossUncertainty
 from contact_dynamics.world import Body, Surface, World, box_vertices
-from message_values.many import asked_of_many
 from questions.known_world import CUBE, FLOOR, SIDE, state
 
 BALL = Body(
@@ -306,6 +306,23 @@ def bodies_contact_mode_questions(draw: st.DrawFn) -> BodiesContactModeQuestion:
         torques_W=draw(nothing),
         gravity_W=draw(gravities),
         velocity_tolerance=draw(optional_sizes),
+    )
+
+
+def asked_of_many(question: ContactModeQuestion) -> ContactModeQuestion:
+    """Return a question without what is not asked for many candidates."""
+    return replace(
+        question,
+        force_W=np.zeros(3),
+        torque_W=np.zeros(3),
+        friction_facets=None,
+        margin_length=question.margin_length if question.include_margins else None,
+        include_wrenches=False,
+        include_statics=False,
+        include_impact=False,
+        uncertainty=EXACT_CONTACTS,
+        include_geometry_margins=False,
+        include_probabilities=False,
     )
 
 
