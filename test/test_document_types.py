@@ -8,14 +8,12 @@ import importlib
 import re
 from dataclasses import MISSING, fields
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
 from mypy import api
 
-from contact_dynamics import BodyState, ContactSet, MassProperties
-from contact_dynamics.questions import ContactModeQuestion
+from hostile_values import CALLS
 from running_server import ROOT
 
 PAGES = ("README.md", "docs/*.md", "docs/tutorials/*.md", "contact_dynamics_interfaces/README.md")
@@ -88,100 +86,17 @@ def test_what_type_checkers_see_of_a_constructor_is_what_it_takes() -> None:
         assert sorted(arguments) == sorted(taken), name
 
 
-EYE = [[1, 0, 0], [0, 1, 0], [0, 0, 1]]
-BODY = {"mass": 1, "I_B": EYE}
-AT_REST = {"p_WB_W": [0, 0, 0], "q_WB": [0, 0, 0, 1], "v_WB_W": [0, 0, 0], "w_WB_W": [0, 0, 0]}
-TRIANGLE = [[0, 0, 0], [1, 0, 0], [0, 1, 0]]
-SURFACE = {"friction": 0, "restitution": 0}
-ONE_CONTACT = {"p_WC_W": [[0, 0, 0]], "normals_W": [[0, 0, 1]], "frictions": [0], "restitutions": [0]}
-LISTS: dict[str, dict[str, Any]] = {
-    "ContactUncertainty": {"points": (1e-3, 2e-3)},  # it stays a tuple, with a number for each contact
-    "BodyState": AT_REST,
-    "Body": {
-        "name": "body",
-        "mass_properties": MassProperties(mass=1, I_B=EYE),
-        "p_FB_F": [0, 0, 0],
-        "vertices_B": TRIANGLE,
-    },
-    "ConstantWrench": {"force": [0, 0, 1], "torque": [0, 0, 1]},
-    "ContactSet": ONE_CONTACT,
-    "ConvexShape": {"vertices": TRIANGLE},
-    "Curvatures": {"along": [1], "across": [0], "directions_W": [[1, 0, 0]]},
-    "ManyStates": {name: [numbers] for name, numbers in AT_REST.items()},
-    "MassProperties": BODY,
-    "Obstacle": {"name": "obstacle", "vertices_W": TRIANGLE, **SURFACE},
-    "PlaneOfMotion": {"normal_W": [0, -1, 0]},
-    "StrikingBodies": {
-        "masses": [1],
-        "inertias_B": [EYE],
-        "q_WB": [[0, 0, 0, 1]],
-        "v_WB_W": [[0, 0, -1]],
-        "w_WB_W": [[0, 0, 0]],
-        "r_W": [[0, 0, -1]],
-    },
-    "Surface": {"name": "floor", "p_WS_W": [0, 0, 0], "normal_W": [0, 0, 1], **SURFACE},
-    "World": {"gravity_W": [0, 0, -1]},
-    "Contact": {"p_WC_W": [0, 0, 0], "normal_W": [0, 0, 1], "friction": 0},
-    "TumblingQuestion": {"body": "brick", "gravity_W": [0, 0, -1]},
-    "ContactModeQuestion": {
-        "body": "brick",
-        "force_W": [0, 0, 1],
-        "torque_W": [0, 0, 1],
-        "gravity_W": [0, 0, -1],
-    },
-    "BodiesContactModeQuestion": {
-        "bodies": ("brick",),
-        "contacts": ContactSet(**ONE_CONTACT),
-        "pairs": ((0, None),),
-        "forces_W": [[0, 0, 1]],
-        "torques_W": [[0, 0, 1]],
-        "gravity_W": [0, 0, -1],
-    },
-    "ManyContactModesQuestion": {
-        "asked": ContactModeQuestion(body="brick"),
-        "forces_W": [[0, 0, 1]],
-        "torques_W": [[0, 0, 1]],
-    },
-    "AtTimes": {"times": [0, 1]},
-    "AtStamps": {"stamps_ns": (0, 1)},
-    "UntilPlane": {"plane_point": [0, 0, 0], "plane_normal": [0, 0, 1], "body_point": [0, 0, 0]},
-    "SpatialContactProblem": {
-        "body": MassProperties(mass=1, I_B=EYE),
-        "state": BodyState(**AT_REST),
-        "contacts": ContactSet(**ONE_CONTACT),
-        "force_W": [0, 0, -1],
-        "torque_W": [0, 0, 0],
-    },
-    "BodiesContactProblem": {
-        "bodies": (MassProperties(mass=1, I_B=EYE),),
-        "states": (BodyState(**AT_REST),),
-        "contacts": ContactSet(**ONE_CONTACT),
-        "pairs": ((0, None),),
-        "forces_W": [[0, 0, -1]],
-        "torques_W": [[0, 0, 0]],
-    },
-    "ResponseContactProblem": {
-        "inverse_inertia_W": EYE,
-        "accelerations_W": [[0, 0, -1]],
-        "contacts": ContactSet(**ONE_CONTACT),
-        "velocities_W": [[0, 0, 0]],
-    },
-    "UncertainState": {"state": BodyState(**AT_REST), "covariance": np.eye(12).tolist()},
-    "TossUncertainty": {
-        "covariance": np.eye(6).tolist(),
-        "lasting_factors": [1.5],
-        "lasting_factor_stds": [0.1],
-    },
-}
-
-
 def test_what_is_typed_as_array_like_may_be_a_list() -> None:
     for module, name, arguments in typed_constructors():
-        given = LISTS[name]
+        given = {
+            field: value.tolist() if isinstance(value, np.ndarray) else value
+            for field, value in CALLS[name][1].items()
+        }
         assert set(given) <= {argument.removesuffix("?") for argument in arguments}, name
         made = getattr(importlib.import_module(module), name)(**given)
-        for field in (field for field, value in given.items() if isinstance(value, list)):
+        for field, value in given.items():
             array = getattr(made, field)
-            assert array.dtype == np.float64, (name, field)
-            assert not array.flags.writeable, (name, field)
-            assert np.array_equal(array, given[field]), (name, field)
+            if isinstance(value, list) and isinstance(array, np.ndarray):
+                assert array.dtype == np.float64, (name, field)
+                assert not array.flags.writeable, (name, field)
+                np.testing.assert_array_equal(array, np.broadcast_to(value, array.shape))
