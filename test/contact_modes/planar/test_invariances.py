@@ -78,21 +78,6 @@ def test_many_feet_between_two_add_only_letters(case: FloatCase, width: float, c
     check_evidence(wider, body, resting, [*feet, *contacts], wrench)
 
 
-@given(cases, st.floats(1.0, 1e3), st.floats(-0.9, 0.9))
-def test_a_far_contact_that_others_make_redundant_adds_only_its_letter(
-    case: FloatCase, reach: float, place: float
-) -> None:
-    """Between two feet of one face the ground holds nothing that the two do not."""
-    body, _, contacts, wrench = case
-    resting = PlanarVelocity(v=(0.0, 0.0), w=0.0)
-    feet = [PlanarContact(r=(x * reach, -3.0), normal=(0.0, 1.0), friction=0.5) for x in (-1.0, 1.0, place)]
-    answer = ask((body, resting, [*contacts, *feet[:2]], wrench))
-    wider = ask((body, resting, [*contacts, *feet], wrench))
-    for found, expected in zip(strings(wider), strings(answer), strict=True):
-        assert {mode[:-1] for mode in found} == expected
-        assert len(found) == len(expected)
-
-
 def test_noise_within_the_tolerance_does_not_move_a_resting_block() -> None:
     body = PlanarBody(mass=0.4, inertia=3e-4)
     contacts = [PlanarContact(r=(x, -0.05), normal=(0.0, 1.0), friction=0.18) for x in (-0.05, 0.0, 0.05)]

@@ -18,7 +18,6 @@ from contact_dynamics.contact_modes import (
     SpatialContactProblem,
     SpatialMode,
     contact_modes,
-    mode_margins,
 )
 from contact_dynamics.tolerances import FLUSH, FLUSH_ROUGHLY, STRICT
 from contact_modes.evidence import spatial_problem
@@ -172,13 +171,6 @@ def test_no_choice_of_contacts_that_stay_is_decided_twice(seed: int, decade: int
 def test_contacts_that_are_flush_are_left_as_they_are() -> None:
     for seed in range(200, 216):
         assert contact_modes(problem_of(flush(seed, 0.0))).flush_within == 0.0
-
-
-def test_margins_are_those_of_the_modes_that_are_listed() -> None:
-    for seed in (200, 204, 208):
-        problem = problem_of(flush(seed, 1e-10))
-        answer = contact_modes(problem)
-        assert [one.mode for one in mode_margins(problem, answer)] == [mode.mode for mode in answer.modes]
 
 
 def test_no_mode_that_is_listed_penetrates() -> None:

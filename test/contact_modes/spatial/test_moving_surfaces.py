@@ -319,28 +319,6 @@ def test_modes_are_those_of_a_still_problem_with_explicit_pseudo_forces(seed: in
         np.testing.assert_allclose(two.contact_accelerations_W, one.contact_accelerations_W, atol=10 * size)
 
 
-@pytest.mark.parametrize("one_motion", [True, False])
-@seeds(range(6), slow=range(6, 100))
-def test_a_common_velocity_and_the_order_of_contacts_do_not_matter(seed: int, *, one_motion: bool) -> None:
-    problem, _ = moving_problem(seed, one_motion=one_motion)
-    first = cd.contact_modes(problem)
-    boost, contacts, state = np.array([3.0, -2.0, 1.0]), problem.contacts, problem.state
-    faster = replace(contacts, surface_velocities_W=contacts.surface_velocities_W + boost)
-    order = list(range(len(contacts)))[::-1]
-    for other, again in (
-        (replace(problem, state=replace(state, v_WB_W=state.v_WB_W + boost), contacts=faster), order[::-1]),
-        (replace(problem, contacts=contacts.subset(order)), order),
-    ):
-        answer = cd.contact_modes(other)
-        assert answer.verdict == first.verdict
-        found = {"".join(mode.mode[i] for i in again): mode for mode in answer.modes}
-        assert set(found) == {mode.mode for mode in first.modes}
-        for mode in first.modes:
-            same = found[mode.mode]
-            if mode.motion_unique and len(found) == len(first.modes):
-                np.testing.assert_allclose(same.acceleration_W, mode.acceleration_W, atol=1e-6)
-
-
 @seeds(range(20), slow=range(20, 400))
 def test_no_mode_is_missed_where_all_contacts_slide(seed: int) -> None:
     """Friction is then known, so that each string of s and c is one system of linear equations."""

@@ -9,8 +9,6 @@ from typing import NamedTuple
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
-from hypothesis import strategies as st
 
 from contact_dynamics.contact.contact import ContactSet
 from contact_dynamics.contact_modes import (
@@ -73,29 +71,6 @@ def drawn(seed: int) -> Draw:
         friction_facets=4,
     )
     return Draw(problem, rests=kind == 0)
-
-
-@st.composite
-def feet_under_load(draw: st.DrawFn) -> SpatialContactProblem:
-    """Draw feet on a floor that is level, or nearly so at each foot in its own way, under round loads."""
-    places = st.tuples(st.integers(-2, 2), st.integers(-2, 2))
-    feet = draw(st.lists(places, min_size=1, max_size=4, unique=True))
-    leans = st.one_of(st.just(0.0), st.integers(-12, -2).map(lambda power: 10.0**power))
-    normals = np.array([(draw(leans), draw(leans), 1.0) for _ in feet])
-    frictions = [draw(st.sampled_from([0.0, 0.25, 0.5, 1.0])) for _ in feet]
-    push, torque = draw(st.tuples(*[st.integers(-6, 6)] * 2)), draw(st.tuples(*[st.integers(-3, 3)] * 3))
-    return spatial_problem(
-        BODY,
-        AT_REST,
-        ContactSet(
-            p_WC_W=[(0.1 * x, 0.1 * y, -0.1) for x, y in feet],
-            normals_W=normals / np.linalg.norm(normals, axis=1)[:, None],
-            frictions=frictions,
-        ),
-        (float(push[0]), float(push[1]), -10.0),
-        [0.25 * part for part in torque],
-        friction_facets=4,
-    )
 
 
 def at_rest(answer: SpatialModeAnswer, problem: SpatialContactProblem) -> bool:
@@ -195,19 +170,6 @@ def check(draw: Draw, seed: int) -> str:
 def test_answers_do_not_contradict_each_other() -> None:
     undecided = [check(drawn(seed), seed) for seed in range(6)]
     assert undecided.count("") >= 2
-
-
-@settings(max_examples=6)
-@given(feet_under_load())
-def test_answers_about_feet_do_not_contradict_each_other(problem: SpatialContactProblem) -> None:
-    check(Draw(problem, rests=False), seed=0)
-
-
-@pytest.mark.slow
-@settings(max_examples=300)
-@given(feet_under_load())
-def test_hundreds_of_answers_about_feet_do_not_contradict_each_other(problem: SpatialContactProblem) -> None:
-    check(Draw(problem, rests=False), seed=0)
 
 
 def test_a_box_slips_by_what_friction_does_not_hold() -> None:

@@ -148,26 +148,6 @@ def test_three_feet_on_a_floor_and_two_on_a_wall_have_three_modes() -> None:
         assert together.motion_unique
 
 
-@pytest.mark.parametrize("feet", [4, 8, 32])
-@pytest.mark.parametrize("push", [0.0, 0.5, 0.99])
-def test_a_box_that_rests_on_many_feet_is_proven_to_rest_without_a_search(feet: int, push: float) -> None:
-    angles = 2.0 * math.pi * np.arange(feet) / feet + 0.1
-    answer = contact_modes(
-        spatial_problem(
-            MassProperties(mass=2.0, I_B=np.diag([0.3, 0.4, 0.5])),
-            AT_REST,
-            ContactSet(
-                p_WC_W=np.column_stack([np.cos(angles), np.sin(angles), np.full(feet, -0.2)]),
-                normals_W=[0.0, 0.0, 1.0],
-                frictions=0.4,
-            ),
-            (0.6 * 8.0 * push, 0.8 * 8.0 * push, -20.0),
-        )
-    )
-    assert (answer.verdict, [mode.mode for mode in answer.modes]) == (ModeVerdict.UNIQUE, ["f" * feet])
-    assert answer.examined <= 1
-
-
 def test_two_feet_that_leave_a_squeezed_box_are_found() -> None:
     """With fewer and wider regions of motions the mode `cccssc` could be neither found nor refuted."""
     points = [
