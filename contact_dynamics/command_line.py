@@ -81,7 +81,7 @@ VERBS: Final = {
         "contact_dynamics.replay.run",
         "contact_dynamics.replay.arguments:replay_parser",
         (),
-        "recompute the answers in a log and compare them; tables, pictures, publishing",
+        "recompute the responses in a log and compare them; tables, pictures, publishing",
     ),
     "evaluate": Verb(
         "contact_dynamics.evaluation.run",
@@ -117,7 +117,7 @@ VERBS: Final = {
         "contact_dynamics.plots.run",
         "contact_dynamics.plots.arguments:plot_parser",
         ("matplotlib",),
-        "draw diagrams of the answers in a log",
+        "draw diagrams of the responses in a log",
     ),
     "cases": Verb(
         "contact_dynamics.cases.run",

@@ -7,7 +7,7 @@ import argparse
 from pathlib import Path
 from typing import Final
 
-MAX_QUESTIONS: Final = 100  # this many questions of a log are drawn unless the command says otherwise
+MAX_RESPONSES: Final = 100  # the number of responses that are drawn by default
 
 
 def plot_parser() -> argparse.ArgumentParser:
@@ -15,11 +15,11 @@ def plot_parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(
         prog="contact-dynamics plot",
         usage="%(prog)s [options] --output DIR LOG",
-        description="Draw diagrams of the answers in a log: trajectories, Poinsot's construction, impacts in "
-        "impulse space, contact modes with their forces, maps of modes and force duals, whole "
+        description="Draw diagrams of the responses in a log: trajectories, Poinsot's construction, impacts "
+        "in impulse space, contact modes with their forces, maps of modes and force duals, whole "
         "tosses, and many states. It requires only the log, and neither ROS nor a viewer.",
-        epilog="Each file name consists of the number of the question in the log, its service, its body and "
-        "the diagram. The exit code is 0 if a diagram was drawn, 1 if the log contains no answer with a "
+        epilog="Each file name consists of the number of the request in the log, its service, its body and "
+        "the diagram. The exit code is 0 if a diagram was drawn, 1 if the log contains no response with a "
         "diagram, and 2 if it is not a log of the server or a file cannot be written.",
     )
     parser.add_argument(
@@ -32,11 +32,11 @@ def plot_parser() -> argparse.ArgumentParser:
         "--format", choices=("svg", "png"), default="svg", help="format of the files (default: svg)"
     )
     parser.add_argument(
-        "--max-questions",
+        "--max-responses",
         type=_count,
-        default=MAX_QUESTIONS,
+        default=MAX_RESPONSES,
         metavar="N",
-        help=f"maximum number of answers to draw (default: {MAX_QUESTIONS})",
+        help=f"maximum number of responses to draw (default: {MAX_RESPONSES})",
     )
     return parser
 

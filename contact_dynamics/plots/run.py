@@ -37,7 +37,7 @@ def main(arguments: list[str]) -> int:
     answered = drawn = 0
     try:
         given.output.mkdir(parents=True, exist_ok=True)
-        for number, logged, world in islice(_answers(Path(given.log)), given.max_questions):
+        for number, logged, world in islice(_answers(Path(given.log)), given.max_responses):
             answered += 1
             for path in _write(number, logged, world, given.output, given.format):
                 drawn += 1
@@ -45,7 +45,7 @@ def main(arguments: list[str]) -> int:
     except (ContactDynamicsError, OSError) as error:
         print(f"contact-dynamics plot: {error}", file=sys.stderr)
         return NO_LOG
-    print(f"{drawn} diagrams of {answered} answers", file=sys.stderr)
+    print(f"{drawn} diagrams of {answered} responses", file=sys.stderr)
     return 0 if drawn else NOTHING_DRAWN
 
 
@@ -61,7 +61,7 @@ def _answers(path: Path) -> Iterator[tuple[int, Answered, World]]:
             if event.status == OK:
                 yield number, event, world
             elif event.status == UNREADABLE:
-                print(f"contact-dynamics plot: question {number}: {event.message}", file=sys.stderr)
+                print(f"contact-dynamics plot: request {number}: {event.message}", file=sys.stderr)
 
 
 def _write(number: int, logged: Answered, world: World, folder: Path, suffix: str) -> list[Path]:

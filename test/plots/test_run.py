@@ -103,8 +103,8 @@ def test_each_answer_has_its_diagrams_without_ros(log: Path, tmp_path: Path) -> 
 
 
 def test_pictures_and_few_answers(log: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    assert main([str(log), "--output", str(tmp_path), "--format", "png", "--max-questions", "1"]) == 0
-    assert capsys.readouterr().err == "2 diagrams of 1 answers\n"
+    assert main([str(log), "--output", str(tmp_path), "--format", "png", "--max-responses", "1"]) == 0
+    assert capsys.readouterr().err == "2 diagrams of 1 responses\n"
     for path in tmp_path.iterdir():
         assert path.read_bytes().startswith(b"\x89PNG"), path
 
@@ -152,5 +152,5 @@ def test_log_and_folder_are_needed(
 @pytest.mark.parametrize("most", ["0", "-3", "many"])
 def test_a_count_that_is_none_is_refused(most: str, capsys: pytest.CaptureFixture[str]) -> None:
     with pytest.raises(SystemExit):
-        main(["log", "--output", "out", "--max-questions", most])
+        main(["log", "--output", "out", "--max-responses", most])
     assert says(capsys.readouterr().err, f"must be a whole number >= 1..., got {most}")

@@ -28,7 +28,7 @@ OPTIONS = {
     "evaluate": ["--against", "--dask", "--results", "--rerun", "RECORDING"],
     "live_monitor": ["--params-file", "--ros-args", *MONITOR_PARAMETERS],
     "monitor": ["--config", "--calibration", "--json", "RECORDING"],
-    "plot": ["--output", "--format", "--max-questions", "LOG"],
+    "plot": ["--output", "--format", "--max-responses", "LOG"],
     "recover": ["--output", "LOG"],
     "replay": ["verify", "info", "table", "view", "publish", "LOG"],
     "server": ["--params-file", "--ros-args", *(each.name for each in described_server_parameters())],
