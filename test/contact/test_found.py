@@ -200,26 +200,6 @@ def test_a_body_has_corners_or_a_shape() -> None:
         Body(name="it", mass_properties=STUFF, vertices_B=corners, shape=sphere(radius=1.0))
 
 
-@pytest.mark.parametrize(
-    ("words", "make"),
-    [
-        ("radius", lambda: sphere(radius=0.0)),
-        ("radius", lambda: capsule(radius=-1.0, length=1.0)),
-        ("length", lambda: capsule(radius=1.0, length=-1.0)),
-        ("length", lambda: cylinder(radius=1.0, length=math.nan)),
-        ("height", lambda: cone(radius=1.0, height=0.0)),
-        (r"size\[1\]", lambda: box(size=(1.0, 0.0, 1.0))),
-        ("outline", lambda: polygon([[0.0, 0.0, 0.0]])),
-        ("rounding", lambda: ConvexShape(rounding=-1.0)),
-        ("rim axis", lambda: ConvexShape(rims=(Rim((0.0, 0.0, 0.0), (0.0, 0.0, 2.0), 1.0),))),
-        ("offset", lambda: sphere(radius=1.0).moved((0.0, 1.0))),
-    ],
-)
-def test_what_is_no_shape_is_refused_by_name(words: str, make: object) -> None:
-    with pytest.raises(InvalidFieldError, match=words):
-        make()  # type: ignore[operator]
-
-
 def test_too_many_rims() -> None:
     rim = Rim((0.0, 0.0, 0.0), (0.0, 0.0, 1.0), 1.0)
     with pytest.raises(TooLargeError, match="rims"):

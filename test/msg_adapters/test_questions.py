@@ -3,15 +3,13 @@
 
 from __future__ import annotations
 
-import math
 import operator
 from typing import Any
 
 import numpy as np
 import pytest
 
-from changed_requests import put
-from contact_dynamics.errors import FrameMismatchError, InvalidFieldError, TooLargeError, UnknownBodyError
+from contact_dynamics.errors import InvalidFieldError
 from contact_dynamics.impact import RestitutionLaw, SeveralContactsLaw
 from contact_dynamics.motion import WrenchAxes
 from contact_dynamics.motion.forces import NO_WRENCH
@@ -197,64 +195,3 @@ def test_a_second_body_is_there_where_anything_is_said_of_it() -> None:
     question = read(request)
     assert question.other is CUBE
     assert question.other_state == PublishedState(stamp_ns=7)
-
-
-@pytest.mark.parametrize(
-    ("service", "path", "value", "error", "words"),
-    [
-        (PredictTumbling, "state_source", 7, InvalidFieldError, "state_source must be .*, got 7"),
-        (PredictTumbling, "body_name", "dog", UnknownBodyError, "got 'dog'"),
-        (PredictTumbling, "body_name", "", InvalidFieldError, "body_name must be .*, got nothing"),
-        (PredictTumbling, "body_name", "x" * 300, TooLargeError, "body_name must be .*, got 300 characters"),
-        (
-            PredictTumbling,
-            "fit_window",
-            0.1,
-            InvalidFieldError,
-            "fit_window must be left out unless state_source is STATE_NEWEST",
-        ),
-        (PredictTumbling, "state.header.frame_id", "map", FrameMismatchError, "got 'map'"),
-        (PredictTumbling, "sampling", 9, InvalidFieldError, r"sampling must be AT_TIMES \(0\).*, got 9"),
-        (PredictTumbling, "gravity", 9, InvalidFieldError, "gravity must be .*, got 9"),
-        (
-            PredictTumbling,
-            "applied_wrench.force.x",
-            math.nan,
-            InvalidFieldError,
-            r"applied_wrench\.force",
-        ),
-        (
-            PredictContactMode,
-            "applied_wrench.torque.x",
-            math.inf,
-            InvalidFieldError,
-            r"applied_wrench\.torque",
-        ),
-        (PredictContactMode, "contact_source", 9, InvalidFieldError, "contact_source must be .*, got 9"),
-        (PredictContactMode, "problem", 9, InvalidFieldError, "problem must be .*, got 9"),
-        (PredictContactMode, "friction_facets", 2, InvalidFieldError, "friction_facets must be .*, got 2"),
-        (PredictImpact, "restitution_law", 9, InvalidFieldError, "restitution_law must be .*, got 9"),
-        (
-            PredictImpact,
-            "several_contacts_law",
-            9,
-            InvalidFieldError,
-            "several_contacts_law must be .*, got 9",
-        ),
-        (PredictImpact, "other_inertia.m", -1.0, InvalidFieldError, "other_inertia.m must be > 0, got -1"),
-        (
-            PredictImpact,
-            "velocity_tolerance",
-            -0.5,
-            InvalidFieldError,
-            "velocity_tolerance must be >= 0, got -0.5",
-        ),
-    ],
-)
-def test_an_error_names_the_field_of_the_request(
-    service: Any, path: str, value: Any, error: type[Exception], words: str
-) -> None:
-    request = explicit(service)
-    put(path, value)(request)
-    with pytest.raises(error, match=words):
-        read(request)

@@ -263,6 +263,8 @@ BEYOND_REASON = [
 """Questions that make sense, and cannot be answered."""
 
 OF_ONE_SERVICE = [
+    (PredictTumbling, put("applied_wrench.force.x", math.nan), "applied_wrench.force"),
+    (PredictContactMode, put("applied_wrench.torque.x", math.inf), "applied_wrench.torque"),
     (PredictTumbling, at_rate(-5.0, 1.0), "rate must be ..., got -5.0"),
     (PredictTumbling, at_rate(1000.0, 1e9), "1e+12 samples", "TOO_LARGE"),
     (

@@ -21,7 +21,7 @@ from contact_dynamics.contact_modes import (
     mode_margins,
     statics,
 )
-from contact_dynamics.errors import InvalidFieldError, UndecidedError
+from contact_dynamics.errors import UndecidedError
 from contact_dynamics.plane.types import PlanarBody, PlanarContact, PlanarVelocity, PlanarWrench
 from contact_modes.evidence import planar_problem
 from oracles.contact_mode_cases import contact, draw, resting, rounded
@@ -121,18 +121,6 @@ def test_numbers_of_any_size_give_finite_evidence(seed: int) -> None:
         pairs = (mode.acceleration, *mode.contact_forces, *mode.contact_accelerations)
         assert all(math.isfinite(x) and math.isfinite(y) for x, y in pairs)
         assert math.isfinite(mode.angular_acceleration)
-
-
-def test_numbers_whose_products_leave_the_range_of_doubles_are_refused() -> None:
-    for make in (
-        lambda: PlanarBody(mass=1e61, inertia=1.0),
-        lambda: PlanarBody(mass=1.0, inertia=1e-61),
-        lambda: PlanarVelocity(v=(0.0, 1e61), w=0.0),
-        lambda: PlanarWrench(f=(0.0, 0.0), moment=-1e61),
-        lambda: PlanarContact(r=(1e61, 0.0), normal=(0.0, 1.0), friction=0.5),
-    ):
-        with pytest.raises(InvalidFieldError, match=r"must be .*1e[+-]60.*, got .*1e[+-]61"):
-            make()
 
 
 @pytest.mark.parametrize("arm", [1e9, 1e30, 1e60])

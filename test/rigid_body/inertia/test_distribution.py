@@ -168,20 +168,6 @@ def test_a_line_or_a_point_is_no_body_for_dynamics() -> None:
     assert isinstance(crossed.mass_properties, MassProperties)
 
 
-@pytest.mark.parametrize(
-    ("arguments", "words"),
-    [
-        ({"I_B": np.diag([1.0, 1.0, 2.1])}, r"I_B must be .*I1 \+ I2 >= I3"),
-        ({"I_B": np.diag([-1.0, 1.0, 1.0])}, r"I_B must be .*I1 \+ I2 >= I3"),
-        ({"I_B": -np.eye(3)}, r"I_B must be .*I1 \+ I2 >= I3"),
-        ({"I_B": np.array([[1.0, 0.1, 0.0], [0.2, 1.0, 0.0], [0.0, 0.0, 1.0]])}, "I_B must be .*symmetric"),
-    ],
-)
-def test_a_distribution_that_no_mass_has_is_refused(arguments: dict[str, object], words: str) -> None:
-    with pytest.raises(InvalidFieldError, match=words):
-        MassDistribution(**{"mass": 1.0, "p_FB_F": np.zeros(3), "I_B": np.eye(3), **arguments})
-
-
 def test_other_misuse_is_refused_by_name() -> None:
     ball = inertia.sphere(radius=1.0, mass=1.0)
     with pytest.raises(InvalidFieldError, match=r"parts must be .*, got none"):

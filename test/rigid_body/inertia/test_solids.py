@@ -143,23 +143,14 @@ def test_a_thin_wall_keeps_its_digits() -> None:
 @pytest.mark.parametrize(
     ("make", "arguments", "words"),
     [
-        (inertia.box, {"size": (1.0, 0.0, 1.0), "mass": 1.0}, r"size must be .*, got \[1.0, 0.0, 1.0\]"),
-        (inertia.box, {"size": (1.0, 1.0), "mass": 1.0}, r"size must be .*, got shape \(2,\)"),
         (inertia.box, {"size": (1.0, 1.0, 1.0)}, "mass or density must be given, and not both, got neither"),
         (inertia.box, {"size": (1.0, 1.0, 1.0), "mass": 1.0, "density": 1.0}, "mass or density .*, got both"),
-        (inertia.sphere, {"radius": -1.0, "mass": 1.0}, "radius must be .*, got -1.0"),
-        (inertia.sphere, {"radius": 1.0, "mass": 0.0}, "mass must be .*, got 0.0"),
-        (inertia.sphere, {"radius": 1.0, "density": math.nan}, "density must be .*, got nan"),
         (
             inertia.tube,
             {"outer_radius": 1.0, "inner_radius": 1.0, "length": 1.0, "mass": 1.0},
             "inner_radius",
         ),
-        (inertia.cone, {"radius": 1.0, "height": 1.0, "top_radius": -0.1, "mass": 1.0}, "top_radius"),
-        (inertia.capsule, {"radius": 1.0, "length": -1.0, "mass": 1.0}, "length must be .*, got -1.0"),
         (inertia.torus, {"ring_radius": 1.0, "tube_radius": 1.1, "mass": 1.0}, "at most the ring_radius, 1"),
-        (inertia.plate, {"size": (1.0, -1.0), "mass": 1.0}, "size must be .*, got"),
-        (inertia.sphere, {"radius": 1e200, "mass": 1.0}, "radius must be .*, got 1e\\+200"),
     ],
 )
 def test_sizes_that_no_shape_has_are_refused(
