@@ -53,6 +53,18 @@ def check_not_negative(field: str, value: Any) -> float:
     return number
 
 
+def check_static(
+    static: Any, friction: float, field: str = "static_friction", kinetic: str = "friction"
+) -> float | None:
+    """Return a coefficient of static friction as a float that is not below that of friction, or None."""
+    if static is None:
+        return None
+    number = check_finite(field, static)
+    if number < friction:
+        raise InvalidFieldError(field, static, f"at least {kinetic}, which is {friction:g}")
+    return number
+
+
 def check_within(field: str, value: Any, lowest: float, highest: float) -> float:
     """Return ``value`` as a float in the closed interval [lowest, highest]."""
     number = check_finite(field, value)

@@ -31,6 +31,7 @@ from contact_dynamics.validation import (
     check_motion,
     check_not_negative,
     check_positive,
+    check_static,
     check_unit,
     check_within,
 )
@@ -323,12 +324,15 @@ class Surface(Record):
             through ``p_WS_W``.
         a_WS_W: (3,), m/s^2, acceleration of the surface's material point at ``p_WS_W``, world axes.
         alpha_WS_W: (3,), rad/s^2, angular acceleration of the surface, world axes.
+        static_friction: Coefficient of static friction, >= ``friction``, of bodies that stick, or None if it
+            is the same. Contact modes, statics and loads use it; impacts use ``friction``. Tosses require
+            None.
         moves: Whether any of these four is not zero.
 
     Raises:
         InvalidFieldError: a number is not finite, the point or a velocity or acceleration is beyond
             `LARGEST_NUMBER`, the normal is not a unit vector, the friction, the factor or the speed is
-            negative, or the restitution is outside [0, 1].
+            negative, the static friction is below the friction, or the restitution is outside [0, 1].
     """
 
     name: str
@@ -342,6 +346,7 @@ class Surface(Record):
     w_WS_W: FloatArray = field(default_factory=_at_rest)
     a_WS_W: FloatArray = field(default_factory=_at_rest)
     alpha_WS_W: FloatArray = field(default_factory=_at_rest)
+    static_friction: float | None = None
     moves: bool = field(init=False, repr=False, default=False)
 
     if TYPE_CHECKING:
@@ -360,6 +365,7 @@ class Surface(Record):
             w_WS_W: ArrayLike = ...,
             a_WS_W: ArrayLike = ...,
             alpha_WS_W: ArrayLike = ...,
+            static_friction: float | None = ...,
         ) -> None:
             """Take whatever NumPy makes arrays of."""
 
@@ -370,6 +376,7 @@ class Surface(Record):
         )
         object.__setattr__(self, "normal_W", check_unit("normal_W", self.normal_W, 3))
         object.__setattr__(self, "friction", check_not_negative("friction", self.friction))
+        object.__setattr__(self, "static_friction", check_static(self.static_friction, self.friction))
         object.__setattr__(self, "restitution", check_within("restitution", self.restitution, 0.0, 1.0))
         object.__setattr__(self, "lasting_factor", check_not_negative("lasting_factor", self.lasting_factor))
         object.__setattr__(self, "lasting_speed", check_not_negative("lasting_speed", self.lasting_speed))

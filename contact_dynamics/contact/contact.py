@@ -24,6 +24,7 @@ from contact_dynamics.validation import (
     check_array,
     check_motion,
     check_not_negative,
+    check_static,
     check_unit,
     check_within,
 )
@@ -59,12 +60,15 @@ class Contact(Record):
             does not rotate.
         surface_acceleration_W: (3,), m/s^2, acceleration of the surface's material point at the contact,
             world axes, centripetal terms included, or None at rest.
+        static_friction: Coefficient of static friction, >= ``friction``, which bounds the force of a contact
+            that sticks. A contact that slides or begins to slide has ``friction``. None means the same.
+            Impacts do not use it.
 
     Raises:
         InvalidFieldError: a number is not finite, the normal is not a unit vector, the friction is negative,
-            the restitution is outside [0, 1], or the curvatures have more than one row or do not allow
-            contact at a single point. Or a velocity or acceleration of the surface is beyond
-            `LARGEST_NUMBER`.
+            the static friction is below it, the restitution is outside [0, 1], or the curvatures have more
+            than one row or do not allow contact at a single point. Or a velocity or acceleration of the
+            surface is beyond `LARGEST_NUMBER`.
     """
 
     p_WC_W: FloatArray
@@ -77,6 +81,7 @@ class Contact(Record):
     surface_velocity_W: FloatArray | None = None
     surface_angular_velocity_W: FloatArray | None = None
     surface_acceleration_W: FloatArray | None = None
+    static_friction: float | None = None
 
     SURFACE_MOTION: ClassVar[tuple[str, ...]] = (
         "surface_velocity_W",
@@ -99,6 +104,7 @@ class Contact(Record):
             surface_velocity_W: ArrayLike | None = None,
             surface_angular_velocity_W: ArrayLike | None = None,
             surface_acceleration_W: ArrayLike | None = None,
+            static_friction: float | None = None,
         ) -> None: ...
 
     def __post_init__(self) -> None:
@@ -106,6 +112,7 @@ class Contact(Record):
         object.__setattr__(self, "p_WC_W", check_array("p_WC_W", self.p_WC_W, (3,)))
         object.__setattr__(self, "normal_W", check_unit("normal_W", self.normal_W, 3))
         object.__setattr__(self, "friction", check_not_negative("friction", self.friction))
+        object.__setattr__(self, "static_friction", check_static(self.static_friction, self.friction))
         if self.restitution is not None:
             object.__setattr__(self, "restitution", check_within("restitution", self.restitution, 0.0, 1.0))
         _check_curvatures(self, self.normal_W[None])
@@ -150,11 +157,14 @@ class ContactSet(Record):
             if none rotates.
         surface_accelerations_W: (n, 3), m/s^2, accelerations of the surfaces' material points at the
             contacts, world axes, centripetal terms included, or None if there are none.
+        static_frictions: (n,), or one for all contacts: coefficients of static friction, as in `Contact`, or
+            None if they are those of ``frictions``.
 
     Raises:
         InvalidFieldError: arrays have different lengths, a number is not finite, a normal is not a unit
-            vector, a friction is negative, a restitution is outside [0, 1], or curvatures do not allow
-            contact at a single point. Or a velocity or acceleration of a surface is beyond `LARGEST_NUMBER`.
+            vector, a friction is negative, a static friction is below it, a restitution is outside [0, 1], or
+            curvatures do not allow contact at a single point. Or a velocity or acceleration of a surface is
+            beyond `LARGEST_NUMBER`.
         TooLargeError: there are more than `MAX_CONTACTS` contacts.
     """
 
@@ -168,6 +178,7 @@ class ContactSet(Record):
     surface_velocities_W: FloatArray | None = None
     surface_angular_velocities_W: FloatArray | None = None
     surface_accelerations_W: FloatArray | None = None
+    static_frictions: FloatArray | None = None
 
     HINT_IF_WRONG: ClassVar[str] = ", which several_impact takes"
 
@@ -192,6 +203,7 @@ class ContactSet(Record):
             surface_velocities_W: ArrayLike | None = None,
             surface_angular_velocities_W: ArrayLike | None = None,
             surface_accelerations_W: ArrayLike | None = None,
+            static_frictions: ArrayLike | None = None,
         ) -> None: ...
 
     def __post_init__(self) -> None:
@@ -216,6 +228,11 @@ class ContactSet(Record):
         object.__setattr__(self, "frictions", frictions)
         object.__setattr__(self, "restitutions", restitutions)
         object.__setattr__(self, "surfaces", tuple(self.surfaces))
+        if self.static_frictions is not None:
+            static = check_array("static_frictions", _for_each(self.static_frictions, n), (n,))
+            for i, pair in enumerate(zip(static.tolist(), frictions.tolist(), strict=True)):
+                check_static(*pair, f"static_frictions[{i}]", f"frictions[{i}]")
+            object.__setattr__(self, "static_frictions", static)
         _check_curvatures(self, normals)
         _check_motion(self, n)
 
@@ -235,6 +252,9 @@ class ContactSet(Record):
             surface_velocities_W=_in_rows([one.surface_velocity_W for one in contacts]),
             surface_angular_velocities_W=_in_rows([one.surface_angular_velocity_W for one in contacts]),
             surface_accelerations_W=_in_rows([one.surface_acceleration_W for one in contacts]),
+            static_frictions=static_or_none(
+                [one.static_friction for one in contacts], [one.friction for one in contacts]
+            ),
         )
 
     @property
@@ -245,6 +265,11 @@ class ContactSet(Record):
             or self.surface_accelerations_W is not None
             or self.surface_angular_velocities_W is not None
         )
+
+    @property
+    def holding_frictions(self) -> FloatArray:
+        """Coefficients of friction, (n,), that bound the forces of contacts that stick."""
+        return self.frictions if self.static_frictions is None else self.static_frictions
 
     @property
     def impact_restitutions(self) -> FloatArray:
@@ -273,6 +298,7 @@ class ContactSet(Record):
             _rows(self.surface_velocities_W, i),
             _rows(self.surface_angular_velocities_W, i),
             _rows(self.surface_accelerations_W, i),
+            None if self.static_frictions is None else float(self.static_frictions[i]),
         )
         _check_curvatures(contact, contact.normal_W[None])
         _check_motion(contact)  # that of a surface at rest becomes None
@@ -295,6 +321,7 @@ class ContactSet(Record):
             surface_curvatures=(
                 None if self.surface_curvatures is None else self.surface_curvatures.subset(chosen)
             ),
+            static_frictions=_rows(self.static_frictions, chosen),
         )
         if not self.surfaces_move:
             return contacts
@@ -311,6 +338,13 @@ def known_restitution(restitution: float | None) -> float:
     if restitution is None:
         raise InvalidFieldError("contact.restitution", "none", _NEEDED)
     return restitution
+
+
+def static_or_none(static: Sequence[float | None], frictions: Sequence[float]) -> list[float] | None:
+    """Return coefficients of static friction, those of friction where it is None, or None if all are."""
+    if all(one is None for one in static):
+        return None
+    return [other if one is None else one for one, other in zip(static, frictions, strict=True)]
 
 
 def all_or_none(restitutions: list[float | None]) -> list[float] | None:
@@ -348,7 +382,7 @@ def _in_rows(vectors: list[FloatArray | None]) -> FloatArray | None:
 
 
 def _rows(vectors: FloatArray | None, which: int | list[int]) -> FloatArray | None:
-    """Return some of the contacts' vectors, or None where there are none."""
+    """Return some of the contacts' vectors or numbers, or None where there are none."""
     return None if vectors is None else vectors[which]
 
 

@@ -21,7 +21,7 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from contact_dynamics.contact.contact import ContactSet
+from contact_dynamics.contact.contact import ContactSet, static_or_none
 from contact_dynamics.contact.curvature import Curvatures
 from contact_dynamics.contact.touches import Side, Touch, flat_touches, lowest_along, site_of, touches_of
 from contact_dynamics.errors import InvalidFieldError, NoShapeError
@@ -131,6 +131,7 @@ def contacts_within(
         surfaces=tuple(owner.name for owner in owners),
         body_curvatures=_sides([touch.body for touch in touches]),
         surface_curvatures=_sides([touch.surface for touch in touches]),
+        static_frictions=_static(owners),
     )
     return _on_moving(found, owners)
 
@@ -169,6 +170,10 @@ def _sides(sides: list[Side]) -> Curvatures:
     )
 
 
+def _static(owners: Sequence[Surface | Obstacle]) -> list[float] | None:
+    return static_or_none([owner.static_friction for owner in owners], [owner.friction for owner in owners])
+
+
 def _on_moving(contacts: ContactSet, owners: Sequence[Surface | Obstacle]) -> ContactSet:
     """Return contacts with the motion of the surfaces that they touch."""
     moving = [(i, each) for i, each in enumerate(owners) if isinstance(each, Surface) and each.moves]
@@ -194,6 +199,7 @@ def _corners(points: FloatArray, surfaces: Sequence[Surface], distance_tolerance
         frictions=np.array([owner.friction for owner in owners]),
         restitutions=np.array([owner.restitution for owner in owners]),
         surfaces=tuple([owner.name for owner in owners]),
+        static_frictions=_static(owners),
     )
     return _on_moving(found, owners)
 

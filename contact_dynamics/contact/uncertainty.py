@@ -36,8 +36,8 @@ class ContactUncertainty(Record):
     Attributes:
         points: m, >= 0, largest distance of the true contact point from the given one.
         normals: rad, from 0 to pi / 2, largest angle between the true normal and the given one.
-        frictions: >= 0, largest difference of the coefficient of friction. True coefficients are not
-            negative.
+        frictions: >= 0, largest difference of the coefficients of friction and static friction. True
+            coefficients are not negative.
 
     Raises:
         InvalidFieldError: a number is negative, not finite or exceeds `LARGEST_NUMBER`, an angle is larger

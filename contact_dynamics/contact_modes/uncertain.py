@@ -193,6 +193,16 @@ class BoundedContact(NamedTuple):
     errors: FloatArray  # (c, d), by how much each coordinate of a row may be off
     min_friction: float  # the smallest coefficient of friction in the box
     max_friction: float  # the largest coefficient of friction in the box
+    min_holding: float  # the smallest coefficient of friction in the box of a contact that sticks
+    max_holding: float  # the largest one
+
+    @classmethod
+    def of(
+        cls, rows: FloatArray, errors: FloatArray, friction: float, holding: float, error: float
+    ) -> BoundedContact:
+        """Return a contact with two coefficients of friction that are off by at most an error."""
+        least = max(0.0, friction - error), max(0.0, holding - error)
+        return cls(rows, errors, least[0], friction + error, least[1], holding + error)
 
 
 class BoundedBody(NamedTuple):
@@ -256,7 +266,7 @@ def _solves_for_all(body: BoundedBody, mode: str) -> bool:
         count = len(one.rows) if letter == STICKS else 1
         (pressing, *across), (off_pressing, *off_across) = forces[at : at + count], off[at : at + count]
         least = pressing - off_pressing
-        if least < 0.0 or math.hypot(*across) + math.hypot(*off_across) > one.min_friction * least:
+        if least < 0.0 or math.hypot(*across) + math.hypot(*off_across) > one.min_holding * least:
             return False
         if letter != STICKS and not rises(one.rows[1] * _sense(letter), one.errors[1]):
             return False

@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from contact_dynamics.contact.contact import ContactSet, all_or_none
+from contact_dynamics.contact.contact import ContactSet, all_or_none, static_or_none
 from contact_dynamics.errors import InvalidFieldError, OutOfPlaneError
 from contact_dynamics.plane.types import PlanarBody, PlanarContact, PlanarVelocity
 from contact_dynamics.rigid_body.body import BodyState, MassProperties
@@ -43,7 +43,7 @@ def mirror_partners(
     """
     n_x, n_y, n_z = plane.normal_W.tolist()
     points, normals = (contacts.p_WC_W - state.p_WB_W).tolist(), contacts.normals_W.tolist()
-    frictions = contacts.frictions.tolist()
+    frictions = list(zip(contacts.frictions.tolist(), contacts.holding_frictions.tolist(), strict=True))
     near = max(distance_tolerance, OUT_OF_PLANE_RATIO * max((math.hypot(*p) for p in points), default=0.0))
     depths = [x * n_x + y * n_y + z * n_z for x, y, z in points]
     partners = [i if abs(depth) <= near else -1 for i, depth in enumerate(depths)]
@@ -134,5 +134,8 @@ def planar_in_space(
         surface_angular_velocities_W=np.outer([one.surface_angular_velocity for one in contacts], normal),
         surface_accelerations_W=np.array([one.surface_acceleration for one in contacts]).reshape(-1, 2)
         @ axes,
+        static_frictions=static_or_none(
+            [contact.static_friction for contact in contacts], [contact.friction for contact in contacts]
+        ),
     )
     return MassProperties(mass=body.mass, I_B=body.inertia * np.eye(3)), state, touching

@@ -212,12 +212,16 @@ def projected(
                 restitution=e,
                 body_curvature=k_B,
                 surface_curvature=k_S,
+                static_friction=static,
             )
-            for r, n, mu, e, (k_B, k_S) in zip(
+            for r, n, mu, e, static, (k_B, k_S) in zip(
                 seen.arms_W,
                 normals,
                 contacts.frictions.tolist(),
-                [None] * len(contacts) if contacts.restitutions is None else contacts.restitutions.tolist(),
+                *(
+                    [None] * len(contacts) if values is None else values.tolist()
+                    for values in (contacts.restitutions, contacts.static_frictions)
+                ),
                 _curvatures_in(plane, contacts),
                 strict=True,
             )

@@ -26,7 +26,13 @@ from contact_dynamics.contact.curvature import planar_gap_acceleration
 from contact_dynamics.errors import InvalidFieldError
 from contact_dynamics.records import NamedInt, Record
 from contact_dynamics.tolerances import LARGEST_NUMBER, LENGTH_ROUNDING, UNIT_LENGTH_TOLERANCE
-from contact_dynamics.validation import check_finite, check_not_negative, check_positive, check_within
+from contact_dynamics.validation import (
+    check_finite,
+    check_not_negative,
+    check_positive,
+    check_static,
+    check_within,
+)
 
 Vector2: TypeAlias = tuple[float, float]
 
@@ -131,13 +137,16 @@ class PlanarContact(Record):
         surface_angular_velocity: Angular velocity of the surface, rad/s, positive from x to y.
         surface_acceleration: Acceleration of the surface's material point at the contact, m/s^2, centripetal
             terms included.
-        surfaces_move: Whether any of these three is not zero.
+        static_friction: Coefficient of static friction, >= ``friction``, which bounds the force of a contact
+            that sticks. A contact that slides or begins to slide has ``friction``. None means the same.
+            Impacts do not use it.
+        surfaces_move: Whether velocity, angular velocity or acceleration of the surface is not zero.
 
     Raises:
         InvalidFieldError: a number is not finite, the normal is not a unit vector, the friction is negative,
-            the restitution is outside [0, 1], or body and surface do not touch at a single point with one
-            normal: the sum of curvatures is <= 0, or both are corners. Or a velocity or
-            acceleration of the surface is beyond `LARGEST_NUMBER`.
+            the static friction is below it, the restitution is outside [0, 1], or body and surface do not
+            touch at a single point with one normal: the sum of curvatures is <= 0, or both are corners. Or a
+            velocity or acceleration of the surface is beyond `LARGEST_NUMBER`.
     """
 
     r: Vector2
@@ -149,6 +158,7 @@ class PlanarContact(Record):
     surface_velocity: Vector2 = _NONE
     surface_angular_velocity: float = _UNTURNED
     surface_acceleration: Vector2 = _NONE
+    static_friction: float | None = None
     surfaces_move: bool = field(init=False, repr=False, default=False)
 
     def __post_init__(self) -> None:
@@ -163,6 +173,8 @@ class PlanarContact(Record):
         unit = (n_x / length, n_y / length) if off > LENGTH_ROUNDING else (n_x, n_y)
         object.__setattr__(self, "normal", unit)
         object.__setattr__(self, "friction", check_not_negative("friction", self.friction))
+        if self.static_friction is not None:
+            object.__setattr__(self, "static_friction", check_static(self.static_friction, self.friction))
         if self.restitution is not None:
             object.__setattr__(self, "restitution", check_within("restitution", self.restitution, 0.0, 1.0))
         if self.body_curvature is not math.inf or self.surface_curvature is not _FLAT:
@@ -173,6 +185,11 @@ class PlanarContact(Record):
             or self.surface_angular_velocity is not _UNTURNED
         ):
             self._check_motion()
+
+    @property
+    def holding_friction(self) -> float:
+        """Coefficient of friction that bounds the force of a contact that sticks."""
+        return self.friction if self.static_friction is None else self.static_friction
 
     @property
     def impact_restitution(self) -> float:

@@ -18,6 +18,7 @@ from contact_dynamics.validation import (
     check_array,
     check_magnitude,
     check_not_negative,
+    check_static,
     check_within,
 )
 
@@ -34,11 +35,13 @@ class Obstacle(Record):
         vertices_W: (k, 3), m, corners in the world.
         friction: Coefficient of Coulomb friction between this obstacle and any body, >= 0.
         restitution: Coefficient of restitution between this obstacle and any body, in [0, 1].
+        static_friction: Coefficient of static friction, as in `Surface`, or None.
         features: Faces, edges and corners, which follow from the vertices.
 
     Raises:
         InvalidFieldError: a number is not finite, a corner is beyond `LARGEST_NUMBER`, all corners are on a
-            line, the friction is negative, or the restitution is outside [0, 1].
+            line, the friction is negative, the static friction is below it, or the restitution is outside
+            [0, 1].
         TooLargeError: there are more than `MAX_VERTICES` corners.
     """
 
@@ -46,11 +49,20 @@ class Obstacle(Record):
     vertices_W: FloatArray
     friction: float
     restitution: float
+    static_friction: float | None = None
     features: Features = field(init=False)
 
     if TYPE_CHECKING:
 
-        def __init__(self, *, name: str, vertices_W: ArrayLike, friction: float, restitution: float) -> None:
+        def __init__(
+            self,
+            *,
+            name: str,
+            vertices_W: ArrayLike,
+            friction: float,
+            restitution: float,
+            static_friction: float | None = None,
+        ) -> None:
             """Take whatever NumPy makes arrays of."""
 
     def __post_init__(self) -> None:
@@ -60,6 +72,7 @@ class Obstacle(Record):
             raise TooLargeError("vertices_W", f"{len(vertices)} vertices", f"at most {MAX_VERTICES}")
         object.__setattr__(self, "vertices_W", vertices)
         object.__setattr__(self, "friction", check_not_negative("friction", self.friction))
+        object.__setattr__(self, "static_friction", check_static(self.static_friction, self.friction))
         object.__setattr__(self, "restitution", check_within("restitution", self.restitution, 0.0, 1.0))
         features = hull_features(vertices) if len(vertices) > 0 else None
         if features is None or len(features.normals) == 0:

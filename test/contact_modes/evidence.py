@@ -105,7 +105,7 @@ def _check_letter(mode: PlanarMode, i: int, contact: PlanarContact, velocity: tu
     f_t, f_n = mode.contact_forces[i]
     a_t, a_n = mode.contact_accelerations[i]
     v_t, v_n = velocity
-    edge = contact.friction * f_n
+    edge = (contact.holding_friction if letter == "f" else contact.friction) * f_n
     assert f_n >= 0.0
     if letter == "s":
         assert (f_t, f_n) == (0.0, 0.0)

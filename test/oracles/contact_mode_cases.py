@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import math
 import random
+from dataclasses import replace
 from fractions import Fraction
 
 from contact_dynamics.plane.types import PlanarBody, PlanarContact, PlanarVelocity, PlanarWrench
@@ -30,6 +31,16 @@ def contact(x: float, y: float, normal: tuple[int, int] = (0, 1), friction: str 
         (Fraction(normal[0], length), Fraction(normal[1], length)),
         Fraction(friction),
     )
+
+
+def with_static_friction(case: ExactCase, seed: int) -> ExactCase:
+    """Return the case with static friction that is larger at most contacts, by a third to three."""
+    chance = random.Random(seed)
+    contacts = [
+        replace(one, static=one.friction + Fraction(chance.choice((0, 1, 2, 4, 9)), 3))
+        for one in case.contacts
+    ]
+    return replace(case, contacts=tuple(contacts))
 
 
 def resting(*contacts: ExactContact, force: tuple[int, int] = (0, -1), moment: int = 0) -> ExactCase:
@@ -111,7 +122,10 @@ def rounded(
         PlanarVelocity(v=turned(case.v, length / time), w=float(case.w) / time),
         [
             PlanarContact(
-                r=turned(one.r, length), normal=turned(one.normal, 1.0), friction=float(one.friction)
+                r=turned(one.r, length),
+                normal=turned(one.normal, 1.0),
+                friction=float(one.friction),
+                static_friction=None if one.static is None else float(one.static),
             )
             for one in case.contacts
         ],

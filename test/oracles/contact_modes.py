@@ -21,6 +21,7 @@ class ExactContact:
     r: tuple[Fraction, Fraction]
     normal: tuple[Fraction, Fraction]  # exactly unit
     friction: Fraction
+    static: Fraction | None = None  # of a contact that sticks, or None if it is the same
 
 
 @dataclass(frozen=True)
@@ -50,6 +51,7 @@ class ExactCase:
     def forces(self, contact: ExactContact, letter: str) -> list[tuple[Fraction, Fraction]]:
         """Return the edges (f_t, f_n) of the forces that a letter allows."""
         mu, one = contact.friction, Fraction(1)
+        mu = contact.static if letter == "f" and contact.static is not None else mu
         return {"s": [], "l": [(mu, one)], "r": [(-mu, one)], "f": [(mu, one), (-mu, one)]}[letter]
 
 

@@ -2,10 +2,11 @@
 """Every mode of a planar body that is consistent with mechanics (Mason, lecture 26).
 
 The model is a rigid body in the plane that touches the world with Coulomb friction, under an applied
-wrench. A contact is a point of the body on a flat of the world, unless its curvatures say otherwise
-(`PlanarContact`). A mode says which contact equations hold. It is kept if the accelerations that follow
-contradict none of its letters. The lecture's table decides, and is as strict: a normal force may be zero,
-and a contact with the letter `s` needs v_n > 0 or a_n > 0.
+wrench. A contact that sticks has static friction; one that slides or begins to slide has friction. A contact
+is a point of the body on a flat of the world, unless its curvatures say otherwise (`PlanarContact`). A mode
+says which contact equations hold. It is kept if the accelerations that follow contradict none of its letters.
+The lecture's table decides, and is as strict: a normal force may be zero, and a contact with the letter `s`
+needs v_n > 0 or a_n > 0.
 
 A contact's velocity within `velocity_tolerance` counts as zero. An angular velocity counts as zero if it
 moves no contact relative to the centre of mass by more than that.
@@ -125,7 +126,7 @@ def _judged(case: PlanarCase, accuracy: float) -> tuple[Judged, str]:
     if any(row.size_n > LARGEST_PLANAR_ARM or row.size_t > LARGEST_PLANAR_ARM for row in case.rows):
         return Judged([], [], sorted(cells)), _TOO_FAR
     judged = judge_all(case, cells, accuracy)
-    if any(contact.friction > 1.0 and beyond_grip(contact, case.rho) for contact in case.contacts):
+    if any(contact.holding_friction > 1.0 and beyond_grip(contact, case.rho) for contact in case.contacts):
         return _whatever_the_grip(case, cells, accuracy, judged)
     if not judged.consistent and case.lift is None and all(row.slides == 0.0 for row in case.rows):
         return Judged([], [], sorted(cells)), SOME_MODE
@@ -212,6 +213,7 @@ class _ContactAxes(NamedTuple):
     u_n: float  # m/s^2, the part of w_n that does not come from it
     terms: float  # m/s^2, the sum of the absolute terms of w_t and w_n, which bounds their rounding
     friction: float
+    holding: float  # the coefficient of friction of a contact that sticks
     load: float  # N/kg^(1/2), size of (f, moment / rho) and centripetal forces, over the root of the mass
     accuracy: float  # the relative tolerance
 
@@ -287,11 +289,13 @@ def _contact_axes(
     w_t = u_t - r_n * alpha
     w_n = u_n + r_t * alpha
     terms = (abs(f_x) + abs(f_y)) * per_mass + (abs(r_t) + abs(r_n)) * abs(alpha) + centripetal
-    friction = min(contact.friction, LARGEST_NUMBER)
+    mu = holding = min(contact.friction, LARGEST_NUMBER)
+    if contact.static_friction is not None:
+        holding = min(contact.static_friction, LARGEST_NUMBER)
     load = math.sqrt(force) + centripetal / math.sqrt(per_mass)
     # By position, which is faster than by name, and the names are the same.
     axes = _ContactAxes(
-        r_t, r_n, per_mass, per_inertia, det, w_t, w_n, alpha, u_t, u_n, terms, friction, load, accuracy
+        r_t, r_n, per_mass, per_inertia, det, w_t, w_n, alpha, u_t, u_n, terms, mu, holding, load, accuracy
     )
     if abs(w_n) <= axes.tolerance(axes.along(0.0, 1.0), axes.terms):
         axes = axes._replace(w_n=0.0)
@@ -342,12 +346,12 @@ def _fixed(axes: _ContactAxes) -> _Solution | _Failure:
     terms_n, terms_t = (abs(b) + a) * axes.terms / axes.det, (abs(b) + c) * axes.terms / axes.det
     if f_n < -axes.tolerance(a / axes.det, terms_n):
         return _Failure(Refusal.PULLS, f_n)
-    excess = abs(f_t) - axes.friction * f_n
-    square = axes.along(math.copysign(axes.friction, f_t), 1.0) / axes.det
-    if excess > axes.tolerance(square, terms_t + axes.friction * terms_n):
+    excess = abs(f_t) - axes.holding * f_n
+    square = axes.along(math.copysign(axes.holding, f_t), 1.0) / axes.det
+    if excess > axes.tolerance(square, terms_t + axes.holding * terms_n):
         return _Failure(Refusal.OUTSIDE_CONE, excess)
     f_n = max(f_n, 0.0)
-    edge = axes.friction * f_n  # rounding error must not move the force out of the cone
+    edge = axes.holding * f_n  # rounding error must not move the force out of the cone
     return _Solution(max(-edge, min(edge, f_t)), f_n, 0.0, 0.0, unique=True)
 
 

@@ -151,8 +151,9 @@ def _consistent(
 def _in_cones(case: PlanarCase, cell: Cell, forces: list[Vector2]) -> list[Vector2]:
     """Return the forces, with those that leave their friction cones by a little moved into them."""
     inside = []
-    for (position, _), (f_t, f_n) in zip(cell.letters, forces, strict=True):
-        friction = case.rows[position].friction
+    for (position, letter), (f_t, f_n) in zip(cell.letters, forces, strict=True):
+        row = case.rows[position]
+        friction = row.holding if letter == FIXED else row.friction
         edge = friction * f_n
         if f_n > 0.0:
             inside.append((max(-edge, min(edge, f_t)), f_n))
@@ -257,7 +258,7 @@ class IndependentModes:
         self._load = _size(self._wrench)
         self._accuracy = accuracy
         # Without a finite friction there is no equation for sliding.
-        self._never_slips = any(row.friction == math.inf for row in case.rows)
+        self._never_slips = any(row.holding == math.inf for row in case.rows)
         # The equations of each contact's letter are computed when a mode first has that letter.
         self._equations: dict[tuple[int, int], tuple[_Equation, ...]] = {}
 
@@ -324,9 +325,9 @@ class IndependentModes:
                 at += 1
                 continue
             tangential, f_t = unknowns[at + 1], sizes[at + 1] / unknowns[at + 1].length
-            excess = abs(f_t) - row.friction * f_n
+            excess = abs(f_t) - row.holding * f_n
             if excess > 0.0:
-                one, other = math.copysign(1.0 / tangential.length, f_t), row.friction / normal.length
+                one, other = math.copysign(1.0 / tangential.length, f_t), row.holding / normal.length
                 gradient = _combined(one, tangential.response, -other, normal.response)
                 if excess > tolerance * _size(gradient):
                     return RefusedMode(

@@ -164,6 +164,7 @@ def _same(one: PlanarContact, other: PlanarContact, rho: float) -> bool:
         and abs(n_x - m_x) <= SAME_ROWS
         and abs(n_y - m_y) <= SAME_ROWS
         and one.friction == other.friction
+        and one.holding_friction == other.holding_friction
         and one.body_curvature == other.body_curvature
         and one.surface_curvature == other.surface_curvature
     )
@@ -268,6 +269,7 @@ class ContactRow(NamedTuple):
     b_t: float  # m/s^2, the part of the tangential acceleration that is due to velocities
     slides: float  # -1 if it moves left, +1 if it moves right, and 0 if it is at rest
     friction: float  # the coefficient of friction that acts, see `effective_friction`
+    holding: float  # the same where the contact sticks, not less
 
 
 class Lift(NamedTuple):
@@ -354,8 +356,11 @@ def planar_case(
         size_n, size_t = norm(N), norm(T)
         unit_n, unit_t = _divided(N, size_n), _divided(T, size_t)
         slides = float((v_t > 0.0) - (v_t < 0.0))
-        friction = effective_friction(contact, rho)
-        rows.append(ContactRow(index, N, T, unit_n, unit_t, size_n, size_t, b_n, b_t, slides, friction))
+        friction = holding = effective_friction(contact, rho, contact.friction)
+        if contact.static_friction is not None:
+            holding = effective_friction(contact, rho, contact.static_friction)
+        row = ContactRow(index, N, T, unit_n, unit_t, size_n, size_t, b_n, b_t, slides, friction, holding)
+        rows.append(row)
     return PlanarCase(
         contacts=contacts,
         mass=body.mass,
@@ -392,12 +397,12 @@ def contact_rows(contact: PlanarContact, length: float) -> tuple[Vector3, Vector
     )
 
 
-def effective_friction(contact: PlanarContact, length: float) -> float:
-    """Return the coefficient of friction, but at most what `LARGEST_GRIP` allows."""
-    if contact.friction <= 1.0:
-        return contact.friction
+def effective_friction(contact: PlanarContact, length: float, friction: float) -> float:
+    """Return a coefficient of friction of a contact, but at most what `LARGEST_GRIP` allows."""
+    if friction <= 1.0:
+        return friction
     arms = max(1.0, abs(contact.r[0]) / length, abs(contact.r[1]) / length)
-    return max(1.0, min(contact.friction, LARGEST_GRIP / arms))
+    return max(1.0, min(friction, LARGEST_GRIP / arms))
 
 
 def accuracy_of(problem: PlanarContactProblem) -> float:
@@ -408,24 +413,28 @@ def accuracy_of(problem: PlanarContactProblem) -> float:
     """
     accuracy, rho = problem.acceleration_tolerance, problem.body.radius_of_gyration
     for contact in problem.contacts:
-        if contact.friction > 1.0:
+        friction = contact.holding_friction
+        if friction > 1.0:
             arms = max(1.0, abs(contact.r[0]) / rho, abs(contact.r[1]) / rho)
-            accuracy = min(accuracy, GRIP_TOLERANCE / (effective_friction(contact, rho) * arms))
+            accuracy = min(accuracy, GRIP_TOLERANCE / (effective_friction(contact, rho, friction) * arms))
     return accuracy
 
 
 def beyond_grip(contact: PlanarContact, length: float) -> bool:
-    """Return whether the contact acts with less friction than it has."""
-    return effective_friction(contact, length) < contact.friction
+    """Return whether the contact acts with less friction than it has, static friction included."""
+    friction = contact.holding_friction
+    return effective_friction(contact, length, friction) < friction
 
 
 def never_slipping(case: PlanarCase) -> PlanarCase:
     """Return the case with infinite friction at contacts that act with less friction than they have."""
     contacts, rho = case.contacts, case.rho
-    rows = [
-        row._replace(friction=math.inf) if beyond_grip(contacts[row.contact], rho) else row
-        for row in case.rows
-    ]
+    rows = []
+    for row in case.rows:
+        contact = contacts[row.contact]
+        slips = row.friction == contact.friction
+        friction = row.friction if slips else math.inf
+        rows.append(row._replace(friction=friction, holding=math.inf) if beyond_grip(contact, rho) else row)
     return case._replace(rows=rows)
 
 

@@ -55,7 +55,7 @@ def planar_statics(problem: PlanarContactProblem, *, margin_length: float | None
     answer = planar_contact_modes(replace(problem, velocity=AT_REST))
     target = (wrench.f[0], wrench.f[1], wrench.moment / length)
     rho = body.radius_of_gyration
-    frictions = [effective_friction(contact, rho) for contact in contacts]
+    frictions = [effective_friction(contact, rho, contact.holding_friction) for contact in contacts]
     balance = _balance(contacts, frictions, length)
     smooth = _balance(contacts, [0.0] * len(contacts), length)
     equilibrium = _equilibrium(answer, problem)

@@ -80,7 +80,7 @@ def planar_boxes(problem: PlanarContactProblem, answer: PlanarModeAnswer) -> Box
         is_certain=partial(is_certain, problem, answer),
         sampled=partial(sampled, problem),
         radius_of_gyration=problem.body.radius_of_gyration,
-        frictions=[contact.friction for contact in problem.contacts],
+        frictions=[contact.holding_friction for contact in problem.contacts],
         step=_STEP,
         steps=_STEPS,
     )
@@ -120,13 +120,16 @@ def _moved(
 
     points, normals, frictions = box
     turn, way, step = error(normals), chance.uniform(-math.pi, math.pi), abs(error(points))
+    slip = error(frictions)
     (x, y), (n_x, n_y) = contact.r, contact.normal
     c, s = math.cos(turn), math.sin(turn)
+    friction, static = max(0.0, contact.friction + slip), contact.static_friction
     return replace(
         contact,
         r=(x + step * math.cos(way), y + step * math.sin(way)),
         normal=(c * n_x - s * n_y, s * n_x + c * n_y),
-        friction=max(0.0, contact.friction + error(frictions)),
+        friction=friction,
+        static_friction=None if static is None else max(friction, static + slip),
     )
 
 
@@ -142,19 +145,18 @@ def bounded_body(problem: PlanarContactProblem, box: ContactUncertainty) -> Boun
         moved = np.array([0.0, 0.0, points / rho])
         rounding = SUM_ROUNDING * (abs(rows[0]) + abs(rows[1]))
         errors = sine * abs(rows[::-1]) + less * abs(rows) + moved + rounding
-        least = max(0.0, contact.friction - frictions)
-        found.append(BoundedContact(rows, errors, least, contact.friction + frictions))
+        found.append(BoundedContact.of(rows, errors, contact.friction, contact.holding_friction, frictions))
     return BoundedBody(found, np.eye(3), np.array([*wrench.f, wrench.moment / rho]))
 
 
 def holds_everywhere(problem: PlanarContactProblem, mode: str, box: ContactUncertainty) -> bool:
     """Return whether it is proven that a consistent mode is consistent everywhere in a box."""
     body = bounded_body(problem, box)
-    least = [one.min_friction for one in body.contacts]
+    least = [one.min_holding for one in body.contacts]
 
     def statics() -> BodyStatics:
         pairs = zip(problem.contacts, least, strict=True)
-        slippery = [replace(contact, friction=friction) for contact, friction in pairs]
+        slippery = [replace(contact, friction=friction, static_friction=None) for contact, friction in pairs]
         return planar_statics(replace(problem, contacts=slippery))
 
     def edges() -> tuple[FloatArray, FloatArray]:
@@ -175,7 +177,7 @@ def no_other_mode(problem: PlanarContactProblem, mode: str, box: ContactUncertai
     size = float(np.linalg.norm(w))
     if size == 0.0:
         return set(mode) == {STICKS}
-    if any(abs(_edges(one, one.max_friction)[0]).max() > _LARGEST_EDGE for one in contacts):
+    if any(abs(_edges(one, one.max_holding)[0]).max() > _LARGEST_EDGE for one in contacts):
         return False
     proof = _Proof(contacts, w / size, mode)
     try:
@@ -267,7 +269,7 @@ def _edges_of(contact: BoundedContact, letter: str) -> tuple[FloatArray, FloatAr
         return _edges(contact, least, most)
     if letter == SLIDES_RIGHT:
         return _edges(contact, -least, -most)
-    return _edges(contact, -most, most)
+    return _edges(contact, -contact.max_holding, contact.max_holding)
 
 
 def _edges(contact: BoundedContact, *slopes: float) -> tuple[FloatArray, FloatArray]:

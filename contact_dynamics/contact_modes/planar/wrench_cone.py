@@ -327,7 +327,8 @@ def friction_edges(rows: Sequence[ContactRow], letters: Letters) -> Edges:
     forces: list[Vector2] = []
     known: dict[tuple[float, int], tuple[Vector2, ...]] = {}  # contacts often have the same friction
     for position, letter in letters:
-        kind = (rows[position].friction, letter)
+        row = rows[position]
+        kind = (row.holding if letter == FIXED else row.friction, letter)
         alike = known.get(kind)
         if alike is None:
             alike = known[kind] = edge_forces(*kind)

@@ -15,7 +15,8 @@ undecided takes a search for all modes of the pyramids (`search`), whose frictio
 against the sliding (`exact_modes`). So the answer does not depend on the pyramids. One
 contact at rest is solved exactly (`one_contact`), and round cones decide whether all contacts can stick
 (`round_cones`).
-A contact without friction has the letter c, whether it slides or not.
+A contact without friction has the letter c, whether it slides or not. A contact that sticks has static
+friction, and one that slides or begins to slide has friction.
 
 `spatial.margins` says how far the applied wrench is from other modes.
 """
@@ -351,7 +352,7 @@ def _sought(case: SpatialCase, search: Search, *, beside_rest: bool, hurried: bo
     if (
         not slides
         and len(case.touching) == 1
-        and search.touching[0].friction > 0.0
+        and search.touching[0].holding > 0.0
         and search.freedoms >= _FREE
     ):
         return Evidence(_of_one_contact(case, search), "")
@@ -493,20 +494,20 @@ def _of_one_contact(case: SpatialCase, search: Search) -> list[ResponseMode]:
     b = case.motion.points_free[case.touching[0]] / case.motion.scale
     return [
         mode_with_forces(case, letter, force[None, :], forces_unique=True, motion_unique=True)
-        for letter, force in modes_of_one(G, b, contact.normal, contact.friction)
+        for letter, force in modes_of_one(G, b, contact.normal, contact.friction, contact.holding)
     ]
 
 
 def _all_stick(case: SpatialCase, search: Search, mode: ResponseMode) -> bool:
     return all(
-        mode.mode[i] == STICKS or (contact.friction == 0.0 and mode.mode[i] == STAYS)
+        mode.mode[i] == STICKS or (contact.holding == 0.0 and mode.mode[i] == STAYS)
         for i, contact in zip(case.touching.tolist(), search.touching, strict=True)
     )
 
 
 def _with_rest(case: SpatialCase, search: Search, found: Evidence) -> Evidence:
     """Return the modes, with the one in which all contacts stick if forces in the round cones allow it."""
-    letters = "".join(STICKS if one.friction > 0.0 else STAYS for one in search.touching)
+    letters = "".join(STICKS if one.holding > 0.0 else STAYS for one in search.touching)
     undecided = found.undecided
     still = [mode for mode in found.modes if _all_stick(case, search, mode)]
     if len(still) > 1:  # the forces that hold a body form a convex set, and are one mode

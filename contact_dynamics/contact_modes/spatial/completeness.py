@@ -197,7 +197,9 @@ class _Work(PyramidPrograms):
         wider = 1.0 / math.cos(math.pi / COARSE)
         super().__init__(
             [
-                contact if pyramid.frame is None else contact._replace(friction=wider * contact.friction)
+                contact
+                if pyramid.frame is None
+                else contact._replace(friction=wider * contact.holding, holding=wider * contact.holding)
                 for contact, pyramid in zip(search.touching, search.pyramids, strict=True)
             ],
             of_forces=search.of_forces,
@@ -211,8 +213,10 @@ class _Work(PyramidPrograms):
         self.staying = among
         self._refutes = refutes
         self._most = most
+        self._slides_alone = False  # whether the modes with less than static friction are known
+        self._grips: list[int] = []  # the contacts at rest that have more static friction
         self._open = [i for i, one in enumerate(search.pyramids) if one.frame is not None]
-        self._all_stick = "".join(STICKS if one.friction > 0.0 else STAYS for one in search.touching)
+        self._all_stick = "".join(STICKS if one.holding > 0.0 else STAYS for one in search.touching)
         self._programs = HoldingPrograms(search, least)
         self._known = known
         self._held = {one.letters for one in known}
@@ -257,12 +261,14 @@ class _Work(PyramidPrograms):
         if not open_ones:
             self._decide_without_directions(letters)
             return
-        if any(
+        self._grips = [i for i in open_ones if self._search.holding[i] > self._search.frictions[i]]
+        self._slides_alone = any(
             one.alone
             and _staying(one.letters) == staying
             and is_only_motion(self._search, one.forces, staying)
             for one in self._known
-        ):
+        )
+        if self._slides_alone and not self._grips:
             return
         if len(open_ones) == 1 or any(self.touching[i].point[:, -1].any() for i in staying):
             stays = [STAYS if i in open_ones else letter for i, letter in enumerate(letters)]
@@ -348,6 +354,8 @@ class _Work(PyramidPrograms):
         Where bodies can move in one way only, they become so.
         """
         if letters in self._decided:
+            return True
+        if self._slides_alone and not any(letters[i] == STICKS for i in self._grips):
             return True
         if letters in self._held:
             return False

@@ -246,7 +246,8 @@ class _System:
                 continue
             found.append(float(forces[i] @ contact.normal))
             if frame is not None:
-                x, y = frame @ forces[i]
+                against = forces[i] if contact.friction > 0.0 else -(contact.point @ self._motion(forces))
+                x, y = frame @ against
                 found.append(math.atan2(-y, -x))
         return np.array(found)
 
@@ -305,13 +306,14 @@ class _System:
                 return False
             elif letter == STICKS:
                 across = float(np.linalg.norm(force - pressing * contact.normal))
-                if across > contact.friction * pressing * (1.0 + LETTERS_ON_CONE):
+                if across > contact.holding * pressing * (1.0 + LETTERS_ON_CONE):
                     return False
             elif self._frames[i] is not None:
                 friction = force - pressing * contact.normal
                 slides = point - float(contact.normal @ point) * contact.normal
                 against = -float(friction @ point) > least * float(np.linalg.norm(friction))
-                if not (against if pressing > 0.0 else float(np.linalg.norm(slides)) > least):
+                rubs = contact.friction * pressing > 0.0
+                if not (against if rubs else float(np.linalg.norm(slides)) > least):
                     return False
         return True
 

@@ -174,7 +174,7 @@ def _shared(case: SpatialCase, search: Search, letters: str, modes: Sequence[Res
 def letters_of(mode: ResponseMode, case: SpatialCase, search: Search) -> str:
     """Return the letters of the touching contacts, with c for contacts that stay without friction."""
     return "".join(
-        STAYS if contact.friction == 0.0 and mode.mode[i] == STICKS else mode.mode[i]
+        STAYS if contact.holding == 0.0 and mode.mode[i] == STICKS else mode.mode[i]
         for i, contact in zip(case.touching.tolist(), search.touching, strict=True)
     )
 

@@ -74,6 +74,7 @@ class HoldingPrograms:
         self._least = least
         n = len(search.touching)
         self._frictions, self._points, self._rising = search.frictions, search.points, search.rising
+        self._holding = search.holding
         frames = np.array([np.zeros((2, 3)) if p.frame is None else p.frame for p in search.pyramids])
         self._across = frames @ self._points  # (n, 2, d + 1)
         # Each contact's only edge, or the middle of its edges, and its tangents, with what they cause.
@@ -185,7 +186,7 @@ class HoldingPrograms:
             self._around[facets] = [
                 self._leaning([i], np.zeros((1, 1)), np.zeros((1, 1)))
                 if pyramid.frame is None
-                else self._leaning([i], np.full((1, facets), -wider * self._frictions[i]), turns)
+                else self._leaning([i], np.full((1, facets), -wider * self._holding[i]), turns)
                 for i, pyramid in enumerate(self._search.pyramids)
             ]
         return self._around[facets]

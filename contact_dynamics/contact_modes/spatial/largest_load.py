@@ -388,7 +388,9 @@ def least_friction(
     below = None
 
     def scaled(factor: float) -> SpatialContactProblem:
-        contacts = replace(problem.contacts, frictions=factor * problem.contacts.frictions)
+        contacts, static = problem.contacts, problem.contacts.static_frictions
+        static = None if static is None else factor * static
+        contacts = replace(contacts, frictions=factor * contacts.frictions, static_frictions=static)
         return replace(problem, state=state, contacts=contacts)
 
     def slips(factor: float) -> bool:
@@ -396,7 +398,7 @@ def least_friction(
         return bool(held.against(held.limited(problem.wrench_W)).any())
 
     low, factor = 0.0, 1.0 if slips(0.0) else 0.0
-    if factor > 0.0 and not problem.contacts.frictions.any():
+    if factor > 0.0 and not problem.contacts.holding_frictions.any():
         raise InvalidFieldError("problem.contacts.frictions", "zeros", "> 0 where there is friction")
     while factor * SAME_FACTOR < 1.0 and slips(factor):
         low, factor = factor, 2.0 * factor
@@ -417,7 +419,8 @@ def least_friction(
     return LeastFriction(
         factor=factor,
         frictions=tuple(
-            (factor * friction if friction else 0.0) for friction in problem.contacts.frictions.tolist()
+            (factor * friction if friction else 0.0)
+            for friction in problem.contacts.holding_frictions.tolist()
         ),
         verdict_below=verdict,
         modes_below=modes,
@@ -487,7 +490,7 @@ class _Held:
         self.units = np.diag(self._scale)
         normals, rows, acts = contacts.normals_W, np.eye(n)[:, self._which], most > 0.0
         along = np.array([tangents((x, y, z)) for x, y, z in normals.tolist()]).reshape(-1, 2, 3)
-        lean = share * np.minimum(contacts.frictions, LARGEST_NUMBER)[:, None, None] * along
+        lean = share * np.minimum(contacts.holding_frictions, LARGEST_NUMBER)[:, None, None] * along
         leans = [lean @ jacobians, np.zeros((n, 2, len(self._which)))]
         self._sum = RoundSum(
             rays=np.eye(len(self._scale))[self._size :],

@@ -367,7 +367,7 @@ def spatial_mode_margins(
         return ()
     present = answer if problem.sharpen else spatial_contact_modes(replace(problem, sharpen=True))
     case = cast("SpatialCase", spatial_case(problem, within=answer.flush_within))
-    few = np.count_nonzero(case.contacts.frictions[case.touching]) * FRICTION_FACETS <= MAX_EDGES
+    few = np.count_nonzero(case.contacts.holding_frictions[case.touching]) * FRICTION_FACETS <= MAX_EDGES
     search = search_of(case, FRICTION_FACETS if few else _FEW_FACETS)
     metric = np.array([1.0, 1.0, 1.0, length, length, length])
     size = float(np.linalg.norm(problem.wrench_W / metric))

@@ -62,7 +62,7 @@ def mode_with_forces(
         way = sliding[i] if np.any(sliding[i]) else across[i]
         size = float(np.linalg.norm(way))
         # Without friction one letter stands for both, and the acceleration says whether the contact slides.
-        smooth = letter == STAYS and contacts.frictions[i] == 0.0
+        smooth = letter == STAYS and contacts.holding_frictions[i] == 0.0
         rests = smooth and not np.any(sliding[i]) and size <= slowest * motion.scale
         letters[i] = STICKS if rests else letter
         if letters[i] == STAYS:
@@ -95,6 +95,7 @@ def with_least_forces(case: SpatialCase, mode: ResponseMode) -> ResponseMode:
     acting = [i for i, letter in enumerate(mode.mode) if letter != SEPARATES]
     normals = case.contacts.normals_W[acting]
     frictions = np.minimum(case.contacts.frictions[acting], LARGEST_NUMBER)
+    holding = np.minimum(case.contacts.holding_frictions[acting], LARGEST_NUMBER)
     slides = mode.tangential_directions_W[acting]
     rays = slides.any(axis=1)
     axes = normals - frictions[:, None] * slides
@@ -102,7 +103,7 @@ def with_least_forces(case: SpatialCase, mode: ResponseMode) -> ResponseMode:
     columns = (3 * np.array(acting)[:, None] + np.arange(3)).ravel()
     effects = (case.motion.points / case.motion.lengths).T[:, columns]
     forces = mode.contact_forces_W.copy()
-    forces[acting] = least_forces(effects, forces[acting], axes, np.where(rays, 0.0, frictions))
+    forces[acting] = least_forces(effects, forces[acting], axes, np.where(rays, 0.0, holding))
     return replace(
         mode,
         contact_forces_W=forces,

@@ -37,9 +37,9 @@ _POLISHING: Final = 8
 
 
 def modes_of_one(
-    G: FloatArray, b: FloatArray, normal: FloatArray, friction: float
+    G: FloatArray, b: FloatArray, normal: FloatArray, friction: float, holding: float
 ) -> list[tuple[str, FloatArray]]:
-    """Return every mode of one contact at rest with friction > 0.
+    """Return every mode of one contact at rest, which has friction and ``holding`` > 0 where it sticks.
 
     A unit force causes the acceleration G, (3, 3). Without force it is b, (3,), whose largest component is
     about 1.
@@ -50,7 +50,7 @@ def modes_of_one(
     held: FloatArray = np.asarray(np.linalg.solve(G, -b), dtype=float)
     pressing = float(held @ normal)
     across = float(np.linalg.norm(held - pressing * normal))
-    if across <= friction * pressing * (1.0 + ONE_CONTACT_ON_CONE) + ONE_CONTACT_ZERO * float(
+    if across <= holding * pressing * (1.0 + ONE_CONTACT_ON_CONE) + ONE_CONTACT_ZERO * float(
         np.linalg.norm(held)
     ):
         found.append((STICKS, held))

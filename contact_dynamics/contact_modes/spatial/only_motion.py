@@ -16,6 +16,10 @@ A contact that already slides has friction in a known, fixed direction. A contac
 f* = n* (N - mu s) with |s| <= 1, where s replaces u*, and z must vanish along its surface. If contacts share
 friction, s is that of a common virtual motion, so that a z exists. If all contacts of a body are on one
 plane, z vanishes everywhere. If normal forces alone hold a body, z is zero.
+
+Where static friction is larger than mu, |u| may exceed 1 at a contact that sticks in the other mode. The
+contribution of such a contact is zero if it sticks in the first mode too, with |s| <= 1. Otherwise the proof
+is about modes without such contacts.
 """
 
 from __future__ import annotations
@@ -53,6 +57,7 @@ class _Contacts(NamedTuple):
     rising: FloatArray  # (n, d), the normal ones
     across: FloatArray  # (n, 3, d), the tangential ones
     turns: FloatArray  # (n,), whether their friction may turn, which is that of contacts at rest
+    holding: FloatArray  # (n,), Coulomb's mu of those that stick
 
 
 def is_only_motion(search: Search, forces: FloatArray, staying: Sequence[int] | None = None) -> bool:
@@ -60,7 +65,8 @@ def is_only_motion(search: Search, forces: FloatArray, staying: Sequence[int] | 
 
     If contacts stick, other forces may cause the same motion. If the given forces, (n, 3), do not yield a
     proof, forces with the friction of a common virtual motion are tried. If ``staying`` is given, only modes
-    in which exactly these contacts stay are considered.
+    in which exactly these contacts stay, without more friction at any contact than it has when it slides, are
+    considered.
     """
     if not search.touching:
         return True
@@ -77,13 +83,18 @@ def is_only_motion(search: Search, forces: FloatArray, staying: Sequence[int] | 
     pressing = np.sum(own * contacts.normals, axis=1)
     friction = contacts.frictions * pressing
     leans = ~slides & (friction > 0.0)
+    grips = contacts.turns * (contacts.holding > contacts.frictions) > 0.0
+    if staying is None and np.any(grips & slides):
+        return False  # these contacts could stick
+    off = np.linalg.norm(own - pressing[:, None] * contacts.normals, axis=1)
+    beyond = grips.any() and np.any(grips & ~slides & (off > friction))
     ways[leans] = -((own - pressing[:, None] * contacts.normals)[leans] / friction[leans, None])
     for k, i in enumerate(everyone):
         speed = float(np.linalg.norm(search.touching[i].sliding))
         if speed > 0.0:
             ways[k] = search.touching[i].sliding / speed
     within = staying is not None
-    if _excludes_others(search, contacts, ways, speeds * slides, within=within):
+    if not beyond and _excludes_others(search, contacts, ways, speeds * slides, within=within):
         return True
     sticks = contacts.turns * (contacts.frictions > 0.0) * ~slides > 0.0
     rests = np.abs(motion).max() <= SAME_MOTION  # `rests_alone` has tried these forces
@@ -171,6 +182,7 @@ def _contacts(search: Search, everyone: list[int]) -> _Contacts:
         rising=rising,
         across=points - normals[:, :, None] * rising[:, None, :],
         turns=np.array([search.pyramids[i].frame is not None for i in everyone], dtype=float),
+        holding=search.holding[everyone],
     )
 
 
@@ -232,7 +244,7 @@ def _most_pressing(search: Search, contacts: _Contacts) -> float:
     if size == 0.0 or not search.at_rest:
         return math.inf
     along = contacts.normals @ (way / size)
-    helps = along - contacts.frictions * np.sqrt(np.maximum(1.0 - along * along, 0.0))
+    helps = along - contacts.holding * np.sqrt(np.maximum(1.0 - along * along, 0.0))
     if helps.min() <= 0.0:
         return math.inf
     points, ways = contacts.points.reshape(-1, search.freedoms), np.tile(way / size, len(contacts.normals))

@@ -45,10 +45,11 @@ class Touching(NamedTuple):
     """A contact that neither approaches nor leaves."""
 
     normal: FloatArray  # (3,), unit
-    friction: float  # Coulomb's mu
+    friction: float  # Coulomb's mu of a contact that slides or begins to slide
     sliding: FloatArray  # (3,), m/s, its tangential velocity; zero where it is at rest
     point: FloatArray  # (3, d + 1), its acceleration as a function of the motion, which has d components
     free: FloatArray  # (3,), its acceleration without contact forces
+    holding: float  # Coulomb's mu of a contact that sticks, which is not less
 
 
 class Pyramid(NamedTuple):
@@ -57,6 +58,17 @@ class Pyramid(NamedTuple):
     edges: FloatArray  # (K, 3), forces with a unit normal part
     frame: tuple[FloatArray, FloatArray] | None  # unit tangents, edge 0 leans along the first; None: one edge
     first: int  # the name of the first edge force. The names of the others follow it.
+    further: FloatArray = np.zeros((0, 3))  # (L, 3), those of a contact that sticks, if it has more friction
+
+    @property
+    def every(self) -> FloatArray:
+        """All edges, (K + L, 3)."""
+        return np.concatenate([self.edges, self.further]) if len(self.further) > 0 else self.edges
+
+    @property
+    def sticking(self) -> FloatArray:
+        """The edges of the force of a contact that sticks, or may stick."""
+        return self.further if len(self.further) > 0 else self.edges
 
     def tangential(self) -> FloatArray:
         """Return the components of the edges along the frame, (K, 2)."""
@@ -66,14 +78,17 @@ class Pyramid(NamedTuple):
 
 def pyramid_of(contact: Touching, facets: int, first: int) -> Pyramid:
     """Return the force edges of a touching contact. The first edge opposes its motion without forces."""
-    normal, friction, sliding, _, free = contact
+    normal, friction, sliding, _, free, holding = contact
     speed = float(np.linalg.norm(sliding))
-    if friction == 0.0:
+    if holding == 0.0:
         return Pyramid(normal[None, :], None, first)
     if speed > 0.0:
         return Pyramid((normal - friction * sliding / speed)[None, :], None, first)
     frame = tangents_towards(normal, -free)
-    return Pyramid(edges_in_frame(normal, friction, facets, frame), frame, first)
+    pyramid = Pyramid(edges_in_frame(normal, friction, facets, frame), frame, first)
+    if holding > friction:
+        pyramid = pyramid._replace(further=edges_in_frame(normal, holding, facets, frame))
+    return pyramid
 
 
 def any_letter(pyramid: Pyramid, point: FloatArray, normal_name: int) -> Option:
@@ -81,14 +96,16 @@ def any_letter(pyramid: Pyramid, point: FloatArray, normal_name: int) -> Option:
 
     `ways_of_sliding` returns the others.
     """
-    own = range(pyramid.first, pyramid.first + len(pyramid.edges))
+    own = range(pyramid.first, pyramid.first + len(pyramid.every))
+    count = len(pyramid.edges)
     nothing = np.zeros((0, point.shape[1]))
     separates = Option(SEPARATES, -1, frozenset(own), normal_name, nothing, 0, ())
     zeroed = frozenset([normal_name])
     if pyramid.frame is None:
         stays = Option(STAYS, -1, zeroed, None, nothing, 0, ())
     else:
-        sticks = Option(STICKS, -1, frozenset(), None, np.array(pyramid.frame) @ point, 2, ())
+        weaker = frozenset(own[:count] if len(own) > count else ())
+        sticks = Option(STICKS, -1, weaker, None, np.array(pyramid.frame) @ point, 2, ())
         stays = Option("", -1, zeroed, None, nothing, 0, (sticks,))
     return Option("", -1, frozenset(), None, nothing, 0, (separates, stays))
 
@@ -110,15 +127,15 @@ def ways_of_sliding(
     else:
         items = 2 * acting[0] + np.arange(2 * acting[1] - 1)
         arcs = np.array_split(items, min(len(items), math.ceil(1.5 * len(items) / count)))
-    return tuple(_slides(arc.tolist(), pyramid.first, along) for arc in arcs)
+    return tuple(_slides(arc.tolist(), pyramid, along) for arc in arcs)
 
 
-def _slides(arc: list[int], first_name: int, along: FloatArray) -> Option:
+def _slides(arc: list[int], pyramid: Pyramid, along: FloatArray) -> Option:
     """Return the letters of sliding within an arc: the edge against it has the least product with it."""
     count = len(along)
     first, last = arc[0], arc[-1]
     acting = {(item + side) // 2 % count for item in arc for side in (0, 1)}
-    silent = frozenset(first_name + j for j in range(count) if j not in acting)
+    silent = frozenset(pyramid.first + j for j in range(len(pyramid.every)) if j not in acting)
     if len(arc) > 1:
         low, high = (first - 1) // 2, last // 2
         middle = -np.mean([along[item // 2 % count] for item in arc if item % 2 == 0], axis=0)
@@ -128,7 +145,7 @@ def _slides(arc: list[int], first_name: int, along: FloatArray) -> Option:
             along[(high + 1) % count] - along[high % count],
         ]
         halves = (arc[: len(arc) // 2], arc[len(arc) // 2 :])
-        parts = tuple(_slides(half, first_name, along) for half in halves)
+        parts = tuple(_slides(half, pyramid, along) for half in halves)
         return Option(STAYS, -1, silent, None, np.array([middle, *sides]), 0, parts)
     first %= 2 * count
     j, k = first // 2, (first + 1) // 2 % count

@@ -379,6 +379,7 @@ def search_of(case: SpatialCase, facets: int, *, from_rest: bool = False) -> Sea
                 sliding=sliding[i],
                 point=point,
                 free=motion.points_free[i],
+                holding=min(float(contacts.holding_frictions[i]), LARGEST_NUMBER),
             )
         )
     forces = (3 * touching[:, None] + np.arange(3)).ravel()

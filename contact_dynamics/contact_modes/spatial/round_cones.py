@@ -66,7 +66,7 @@ class Held(NamedTuple):
 def sticking(search: Search) -> FloatArray:
     """Return rows, (k, d + 1), that vanish where all contacts stay, and those with friction stick."""
     rows = [
-        contact.point if contact.friction > 0.0 else (contact.normal @ contact.point)[None, :]
+        contact.point if contact.holding > 0.0 else (contact.normal @ contact.point)[None, :]
         for contact in search.touching
     ]
     return np.vstack([np.zeros((0, search.freedoms + 1)), *rows])
@@ -83,7 +83,7 @@ def held_by_round_cones(
     demand = _demand(search, rows, tolerance)
     if demand is None:
         return Held(None, certain=True)
-    normals, frictions = search.normals, search.frictions
+    normals, frictions = search.normals, search.holding
     return _nearest(demand, normals, 0.0 * frictions if smooth else frictions)
 
 
@@ -111,7 +111,7 @@ def moved_by_round_cones(search: Search, axes: FloatArray, frictions: FloatArray
 
 def wedged_by_round_cones(search: Search) -> Held:
     """Return forces within the round cones of all touching contacts that balance each other, not all zero."""
-    normals, frictions = search.normals, search.frictions
+    normals, frictions = search.normals, search.holding
     wrenches = search.mass @ search.of_forces
     effects = np.vstack([wrenches, normals.ravel()])  # the last row is the sum of normal forces, which is one
     images = effects.reshape(len(effects), len(normals), 3).transpose(1, 0, 2)
@@ -146,7 +146,7 @@ def polished(search: Search, rows: FloatArray, forces: FloatArray) -> FloatArray
     for contact, force in zip(search.touching, found, strict=True):
         pressing = float(contact.normal @ force)
         across = float(np.linalg.norm(force - pressing * contact.normal))
-        if across > contact.friction * pressing + ROUND_CONE_ON_CONE * float(np.abs(found).max()):
+        if across > contact.holding * pressing + ROUND_CONE_ON_CONE * float(np.abs(found).max()):
             return forces
     return found
 
@@ -157,7 +157,7 @@ def hold_alone(search: Search, forces: FloatArray) -> bool:
     Those of contacts that press must be independent, and the others must not press against what these
     balance.
     """
-    normals, frictions = search.normals, search.frictions
+    normals, frictions = search.normals, search.holding
     wrenches = (
         (search.mass @ search.of_forces).reshape(search.freedoms, -1, 3).transpose(1, 0, 2)
     )  # (n, d, 3)

@@ -96,11 +96,11 @@ class PyramidPrograms(ABC):
         first = 0
         for contact in touching:
             self.pyramids.append(pyramid_of(contact, facets, first))
-            first += len(self.pyramids[-1].edges)
+            first += len(self.pyramids[-1].every)
         self.edges = np.zeros((3 * len(touching), first))  # the contact forces that unit edge forces are
         for i, pyramid in enumerate(self.pyramids):
-            last = pyramid.first + len(pyramid.edges)
-            self.edges[3 * i : 3 * i + 3, pyramid.first : last] = pyramid.edges.T
+            last = pyramid.first + len(pyramid.every)
+            self.edges[3 * i : 3 * i + 3, pyramid.first : last] = pyramid.every.T
         self.of_forces = of_forces
         self.freedoms = len(free)  # the number of components of the motion
         motion = of_forces @ self.edges
@@ -117,6 +117,7 @@ class PyramidPrograms(ABC):
         self._first_normal = first  # the name of contact 0's normal acceleration
         self.normals = np.array([one.normal for one in touching]).reshape(-1, 3)
         self.frictions = np.array([one.friction for one in touching])
+        self.holding = np.array([one.holding for one in touching])
         self.points = np.array([one.point for one in touching]).reshape(-1, 3, self.freedoms + 1)
         # (n, d + 1), the normal accelerations as functions of the motion.
         self.rising = np.array([one.normal @ one.point for one in touching]).reshape(-1, self.freedoms + 1)
@@ -280,6 +281,7 @@ class Common(NamedTuple):
     names: NDArray[np.intp]  # (m, K), the names of the edge forces of these contacts
     tangential: FloatArray  # (m, K, 2), the components of their edges along their frames
     gains: FloatArray | None  # (p,), the power of the applied wrench on coordinates; None if something moves
+    further: list[range]  # the names of the edge forces with which each contact that slides would stick
 
 
 class Search(PyramidPrograms):
@@ -364,7 +366,8 @@ class Search(PyramidPrograms):
         pyramids = [self.pyramids[i] for i in open_ones]
         names = np.array([one.first for one in pyramids])[:, None] + np.arange(len(pyramids[0].edges))
         tangential = np.array([one.tangential() for one in pyramids])
-        return Common(flat.image, open_ones, names, tangential, flat.gains)
+        further = [range(one.first + len(one.edges), one.first + len(one.every)) for one in pyramids]
+        return Common(flat.image, open_ones, names, tangential, flat.gains, further)
 
     def _decide_within(
         self, region: Region, program: AnyProgram, trials: list[Option], common: Common
@@ -374,6 +377,8 @@ class Search(PyramidPrograms):
             return True
         acting = region.acting_edges(common.image, common.names.shape[1])
         silent = frozenset(common.names[~acting].tolist())
+        slides = ~acting.all(axis=1)  # where it can slide in opposite directions, a contact may stick
+        silent = silent.union(*(common.further[k] for k in np.flatnonzero(slides).tolist()))
         further = Narrowing(zeroed=silent, rows=region.rows(common.image), tag=_REGION_TAG)
         narrower = self._solved(program.narrowed(further))
         if narrower is None or not self._dissipates(region, narrower, common):

@@ -78,7 +78,7 @@ def _one_way(search: Search, letters: str, problem: _Problem, sign: float) -> He
         zip(letters, search.touching, search.pyramids, strict=True)
     ):
         if letter == STICKS:
-            axes[i], frictions[i] = contact.normal, contact.friction
+            axes[i], frictions[i] = contact.normal, contact.holding
         elif letter == STAYS:
             across = np.zeros(3)
             if pyramid.frame is not None:
@@ -145,7 +145,7 @@ def _problem(search: Search, letters: str, free_motions: FloatArray) -> _Problem
             tangents.append(contact.friction * frame @ spread)
             slides.append(frame @ contact.point[:, :-1])
         else:
-            others.append(pyramid.edges @ spread)
+            others.append(pyramid.sticking @ spread)
     return _Problem(
         normals=np.array(normals).reshape(-1, size),
         tangents=np.array(tangents).reshape(-1, 2, size),

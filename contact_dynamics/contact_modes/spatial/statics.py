@@ -60,7 +60,7 @@ def spatial_statics(problem: SpatialContactProblem, *, margin_length: float | No
         linearised_cone(normal, min(float(friction), LARGEST_NUMBER), friction_facets, towards=-away)
         if friction > 0.0
         else normal[None, :]
-        for normal, friction, away in zip(contacts.normals_W, contacts.frictions, start, strict=True)
+        for normal, friction, away in zip(contacts.normals_W, contacts.holding_frictions, start, strict=True)
     ]
     at_rest = replace(problem, state=replace(state, v_WB_W=np.zeros(3), w_WB_W=np.zeros(3)), sharpen=True)
     case = cast("SpatialCase", spatial_case(at_rest))  # at rest no contact approaches

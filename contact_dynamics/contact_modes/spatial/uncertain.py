@@ -101,7 +101,7 @@ def no_other_mode(problem: SpatialContactProblem, mode: str, box: ContactUncerta
     body = bounded_body(problem, box)
     if not np.any(body.wrench):
         return set(mode) == {STICKS}
-    if any((1.0 + one.max_friction) * abs(one.rows).max() > _LARGEST_EDGE for one in body.contacts):
+    if any((1.0 + one.max_holding) * abs(one.rows).max() > _LARGEST_EDGE for one in body.contacts):
         return False
     proof = _Proof(body, mode)
     try:
@@ -292,7 +292,7 @@ def _edges(contact: BoundedContact, way: UncertainWay) -> FloatArray:
         radii = np.array([most, most / math.cos(half), most, least, least])
     else:
         angles = np.linspace(0.0, 2.0 * math.pi, _EDGES, endpoint=False)
-        radii = np.full(_EDGES, most / math.cos(math.pi / _EDGES))
+        radii = np.full(_EDGES, contact.max_holding / math.cos(math.pi / _EDGES))
     edges: FloatArray = np.column_stack(
         [np.ones_like(angles), radii * np.cos(angles), radii * np.sin(angles)]
     )
@@ -400,13 +400,13 @@ def bounded_body(problem: SpatialContactProblem, box: ContactUncertainty) -> Bou
         turned = 2.0 * math.sin(0.5 * normals)
         moved = (points + (float(far[i]) + points) * turned) / rho
         turned, moved = max(turned, LEAST_UNCERTAINTY), max(moved, LEAST_UNCERTAINTY)
-        friction = float(contacts.frictions[i])
         found.append(
-            BoundedContact(
-                rows=frame @ jacobians[i],
-                errors=np.array([[turned] * 3 + [moved] * 3] * 3),
-                min_friction=max(0.0, friction - frictions),
-                max_friction=friction + frictions,
+            BoundedContact.of(
+                frame @ jacobians[i],
+                np.array([[turned] * 3 + [moved] * 3] * 3),
+                float(contacts.frictions[i]),
+                float(contacts.holding_frictions[i]),
+                frictions,
             )
         )
     return BoundedBody(found, inertia, np.concatenate([problem.force_W, problem.torque_W / rho]))
@@ -441,7 +441,7 @@ def spatial_boxes(problem: SpatialContactProblem, answer: SpatialModeAnswer) -> 
         is_certain=partial(is_certain, problem, answer),
         sampled=partial(sampled, problem),
         radius_of_gyration=problem.body.mean_radius_of_gyration,
-        frictions=problem.contacts.frictions.tolist(),
+        frictions=problem.contacts.holding_frictions.tolist(),
         step=_STEP,
         steps=_STEPS,
         samples=_SAMPLES,
@@ -485,7 +485,7 @@ def _moved(
     """Return a problem in the box, at its border or inside, with all contacts off the same way or not."""
     contacts = problem.contacts
     points, normals = contacts.p_WC_W.copy(), contacts.normals_W.copy()
-    frictions = contacts.frictions.copy()
+    frictions, holding = contacts.frictions.copy(), contacts.holding_frictions.copy()
     way, lean, sign = chance.normal(size=3), chance.normal(size=3), chance.choice([-1.0, 1.0])
     for i, sizes in enumerate(box.of_each(len(contacts))):
         step, turn, less = sizes * (np.ones(3) if corner else chance.uniform(0.0, 1.0, 3))
@@ -495,7 +495,9 @@ def _moved(
         tangent, _ = tangents_towards(normals[i], lean)
         normals[i] = math.cos(turn) * normals[i] + math.sin(turn) * tangent
         frictions[i] = max(0.0, frictions[i] + sign * less)
-    moved = replace(contacts, p_WC_W=points, normals_W=normals, frictions=frictions)
+        holding[i] = max(0.0, holding[i] + sign * less)
+    static = None if contacts.static_frictions is None else holding
+    moved = replace(contacts, p_WC_W=points, normals_W=normals, frictions=frictions, static_frictions=static)
     return replace(problem, contacts=moved, uncertainty=EXACT_CONTACTS)
 
 
@@ -505,15 +507,16 @@ def holds_everywhere(problem: SpatialContactProblem, mode: str, box: ContactUnce
     The body is at rest, and all contacts touch it. Nothing is proven of contacts that slide.
     """
     body = bounded_body(problem, box)
-    least = np.array([one.min_friction for one in body.contacts])
+    least = np.array([one.min_holding for one in body.contacts])
 
     def statics() -> BodyStatics:
-        return spatial_statics(replace(problem, contacts=replace(problem.contacts, frictions=least)))
+        contacts = replace(problem.contacts, frictions=least, static_frictions=None)
+        return spatial_statics(replace(problem, contacts=contacts))
 
     def edges() -> tuple[FloatArray, FloatArray]:
         wrenches, costs = [], []
         for one in body.contacts:
-            forces = linearised_cone(np.array([1.0, 0.0, 0.0]), one.min_friction, problem.friction_facets)
+            forces = linearised_cone(np.array([1.0, 0.0, 0.0]), one.min_holding, problem.friction_facets)
             wrenches.append(forces @ one.rows)
             costs.append(math.hypot(one.errors[0, 0], one.errors[0, -1]) * np.linalg.norm(forces, axis=1))
         return np.vstack(wrenches), np.concatenate(costs)

@@ -115,7 +115,7 @@ def spatial_wrench_sets(
     if not isinstance(case, SpatialCase):
         return ()
     search = search_of(case, friction_facets)
-    edges = search.edges.shape[1]
+    edges = sum(len(one.edges) for one in search.pyramids)
     if edges > MAX_EDGES:
         raise TooLargeError("contacts", f"{edges} edges of friction pyramids", f"at most {MAX_EDGES}")
     wanted: list[tuple[str, tuple[Way, ...]]] = []

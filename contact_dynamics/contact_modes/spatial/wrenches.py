@@ -105,7 +105,7 @@ def needed_wrenches(
 def with_round_cones(
     case: SpatialCase, search: Search, generators: Generators, contacts: Sequence[int], metric: FloatArray
 ) -> RoundSum:
-    """Return generated wrenches with those of round friction cones at some of the touching contacts.
+    """Return generated wrenches with those of round cones at some of the contacts, which may stick.
 
     A height has the weight `HEIGHT_WEIGHT`, or zero if nothing has a height but the motion that vanishes.
     """
@@ -113,7 +113,7 @@ def with_round_cones(
     points = [case.motion.points[3 * case.touching[k] :][:3] / metric for k in contacts]
     axes = [-search.touching[k].normal @ point for k, point in zip(contacts, points, strict=True)]
     leans = [
-        search.touching[k].friction * np.array(search.pyramids[k].frame) @ point
+        search.touching[k].holding * np.array(search.pyramids[k].frame) @ point
         for k, point in zip(contacts, points, strict=True)
     ]
     rays = np.vstack([generators.rays, generators.lines, -generators.lines])
@@ -140,9 +140,11 @@ def _conditions(contact: Touching, pyramid: Pyramid, way: Way) -> _Conditions:
     if way.letter == SEPARATES:
         return _Conditions(nothing, normal, np.zeros((0, 3)))
     if way.letter == STICKS:
-        return _Conditions(contact.point, nothing, pyramid.edges)
-    if way.item < 0 or pyramid.frame is None:
+        return _Conditions(contact.point, nothing, pyramid.sticking)
+    if pyramid.frame is None:
         return _Conditions(normal, nothing, pyramid.edges)
+    if way.item < 0:
+        return _Conditions(normal, nothing, pyramid.sticking)
     # The edge that opposes the sliding most has the least product with it, alone or with its neighbour.
     count = len(pyramid.edges)
     j, k = way.item // 2, (way.item + 1) // 2 % count

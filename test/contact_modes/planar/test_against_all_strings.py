@@ -11,7 +11,7 @@ from contact_dynamics.contact_modes import ModeVerdict, PlanarModeAnswer, contac
 from contact_dynamics.contact_modes.planar import cone
 from contact_dynamics.contact_modes.planar import wrench_cone as edges
 from contact_modes.evidence import check_evidence, planar_problem
-from oracles.contact_mode_cases import FloatCase, contact, draw, resting, rounded
+from oracles.contact_mode_cases import FloatCase, contact, draw, resting, rounded, with_static_friction
 from oracles.contact_modes import ExactCase, consistent_modes, kinematic_modes, uniqueness
 from sweeps import seeds
 
@@ -98,6 +98,26 @@ def test_drawn_sets_by_the_arrays_that_large_ones_need(seed: int, monkeypatch: p
     monkeypatch.setattr(edges, "MANY", 0)
     exact = draw(seed, most_contacts=4)
     compare(exact, rounded(exact, angle=0.3))
+
+
+@seeds(QUICK, slow=range(20_000, 22_000))
+def test_drawn_sets_with_static_friction(seed: int) -> None:
+    exact = with_static_friction(draw(seed, most_contacts=4), seed)
+    answer = compare(exact, rounded(exact, angle=0.3))
+    for mode in answer.modes:
+        assert (mode.forces_unique, mode.motion_unique) == uniqueness(exact, mode.mode)
+
+
+def test_static_friction_makes_more_drawn_sets_indeterminate() -> None:
+    found = [draw(seed, most_contacts=4) for seed in QUICK]
+    several = [
+        [ask(rounded(one)).verdict == ModeVerdict.INDETERMINATE for one in cases]
+        for cases in (
+            found,
+            [with_static_friction(one, seed) for seed, one in zip(QUICK, found, strict=True)],
+        )
+    ]
+    assert sum(several[1]) > sum(several[0]) + 5
 
 
 def test_the_draws_reach_every_kind_of_answer() -> None:
