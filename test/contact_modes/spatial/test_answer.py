@@ -231,7 +231,7 @@ def test_a_push_at_a_point_and_the_weight_make_the_wrench() -> None:
         assert [found.mode for found in contact_modes(problem).modes] == [mode]
     # A point without a force would be ignored. A sweep of pushes may begin at zero.
     with pytest.raises(InvalidFieldError, match=r"^at_W must be left out unless force_W is given"):
-        SpatialContactProblem.of(crate, state, world, torque_W=[0, 0, 0.1], at_W=[0.8, 0, 0.5])
-    SpatialContactProblem.of(crate, state, world, force_W=[0, 0, 0], at_W=[0.8, 0, 0.5])
+        SpatialContactProblem.of(crate, turned, world, torque_W=[0, 0, 0.1], at_W=[0.8, 0, 0.5])
+    SpatialContactProblem.of(crate, turned, world, force_W=[0, 0, 0], at_W=[0.8, 0, 0.5])
     with pytest.raises(NoContactError, match=r"no point of 'crate' is within 1e-06 m of a surface"):
         SpatialContactProblem.of(crate, replace(turned, p_WB_W=[0, 0, 0.31]), world)
