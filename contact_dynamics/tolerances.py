@@ -52,6 +52,10 @@ SHOWN_AS_ZERO: Final = 1e-12
 FAR_CONTACT: Final = 0.01
 """Relative to the reach of a body's shape. A contact further outside is a mistake, not noise."""
 
+MOVES_INTO: Final = 1e-6
+"""Relative to the largest speed of a body's contact points. After an impact, points that approach a surface
+faster were not among its contacts: impacts leave at most a thousandth of this."""
+
 # the largest load
 
 SAME_FACTOR: Final = 1e-9

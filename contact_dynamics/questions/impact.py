@@ -42,7 +42,7 @@ from contact_dynamics.questions.plane_of_motion import (
     several_in_plane,
 )
 from contact_dynamics.questions.subject import NamedState, Subject, at_stamp, covariance_of, subject_of
-from contact_dynamics.questions.touching import check_has_shape, contacts_of, outside_shape
+from contact_dynamics.questions.touching import check_has_shape, contacts_of, moves_into, outside_shape
 from contact_dynamics.records import Record
 from contact_dynamics.rigid_body.body import BodyState
 
@@ -97,6 +97,7 @@ def answer(question: ImpactQuestion, context: Context | None = None) -> ImpactAn
         resolved = _in_space(question, law, strike)
     if law is SeveralContactsLaw.SEQUENTIAL:
         warnings += _order_warning(question, strike, ordered)
+    warnings += _into_the_world(strike, resolved, known)
     if question.include_orders:
         outcomes = outcomes_over_orders(
             *ordered,
@@ -143,6 +144,23 @@ def _outside(question: ImpactQuestion, strike: _Strike) -> tuple[str, ...]:
         p_WB_W=strike.subject.state.p_WB_W,
         R_WB=strike.subject.state.R_WB,
         distance_tolerance=strike.distance_tolerance,
+    )
+
+
+def _into_the_world(strike: _Strike, resolved: ResolvedImpact, context: Context) -> tuple[str, ...]:
+    """Return warnings of bodies that move into a surface where the impact had no contacts."""
+    world = context.world.after(strike.seconds) if strike.seconds > 0.0 else context.world
+    return tuple(
+        text
+        for subject, state in zip((strike.subject, strike.other), resolved.states, strict=False)
+        if subject is not None
+        for text in moves_into(
+            subject.body,
+            state,
+            world,
+            distance_tolerance=strike.distance_tolerance,
+            velocity_tolerance=strike.velocity_tolerance,
+        )
     )
 
 

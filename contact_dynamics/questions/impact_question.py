@@ -40,8 +40,8 @@ class ImpactAnswer(Answer):
         out_of_plane: m/s, largest motion out of the plane, or NaN for a spatial problem.
         velocity_tolerance: m/s, tolerance that was used.
         distance_tolerance: m, tolerance that was used.
-        warnings: Texts about limited validity: an order of impacts that mechanics does not determine, or a
-            contact outside the body's shape.
+        warnings: Texts about limited validity: an order of impacts that mechanics does not determine, a
+            contact outside the body's shape, or a body that moves into a surface that it touches elsewhere.
     """
 
     body_name: str

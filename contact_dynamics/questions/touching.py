@@ -5,25 +5,28 @@ from __future__ import annotations
 
 import math
 from collections import Counter
+from contextlib import suppress
 from dataclasses import replace
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from contact_dynamics.contact.found import find_contacts, nearest_surface
+from contact_dynamics.contact.found import contacts_within, find_contacts, nearest_surface
 from contact_dynamics.contact.noise import NoisyState, resting, touching
 from contact_dynamics.contact.touches import RIM_POINTS
-from contact_dynamics.errors import NoContactError, NoShapeError
+from contact_dynamics.contact.velocities import relative_velocities
+from contact_dynamics.errors import NoContactError, NoShapeError, NotSupportedError
 from contact_dynamics.questions.extent import check_extent
 from contact_dynamics.shapes.hull_features import RIM_CORNERS, features_of
 from contact_dynamics.shapes.obstacle import closest_points
-from contact_dynamics.tolerances import DISTANCE_TOLERANCE
+from contact_dynamics.tolerances import DISTANCE_TOLERANCE, MOVES_INTO
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from contact_dynamics.contact.contact import ContactSet
     from contact_dynamics.questions.subject import Subject
+    from contact_dynamics.rigid_body.body import BodyState
     from contact_dynamics.validation import FloatArray
     from contact_dynamics.world import Body, World
 
@@ -150,6 +153,27 @@ def outside_shape(
                 f"contact {numbers[i]} is {off[i]:.6g} m {where} the shape of {body.name!r}" for i in found
             )
     return tuple(warnings)
+
+
+def moves_into(
+    body: Body, state: BodyState, world: World, *, distance_tolerance: float, velocity_tolerance: float
+) -> tuple[str, ...]:
+    """Return a warning if a body that touches a surface of the world moves into it after an impact."""
+    contacts = None
+    if not body.shape.is_empty:
+        with suppress(NotSupportedError):  # a rim at the edge of an obstacle
+            contacts = contacts_within(body, state, world.surfaces, distance_tolerance)
+    if not contacts:
+        return ()
+    velocities = relative_velocities(state, contacts)
+    approach = -np.einsum("ij,ij->i", velocities, contacts.normals_W)
+    fastest = int(approach.argmax())
+    if approach[fastest] <= max(velocity_tolerance, MOVES_INTO * float(np.abs(velocities).max())):
+        return ()
+    return (
+        f"after the impact, {body.name!r} moves into {contacts.surfaces[fastest]!r}, which it touches, at "
+        f"{approach[fastest]:.3g} m/s: the contacts there were not part of the impact",
+    )
 
 
 def flush_rim(body: Body, contacts: ContactSet) -> tuple[str, ...]:

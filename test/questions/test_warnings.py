@@ -71,10 +71,43 @@ def test_two_feet_in_a_plane_two_bodies_and_strikes_in_time_warn_too() -> None:
     under = BodyState(p_WB_W=[0, 0, -0.05], q_WB=[0, 0, 0, 1])
     on_another = replace(stated, other=CUBE, other_state=under)
     for question in (stated, in_plane, on_another):
-        (warning,) = impact_questions.answer(question, KNOWN).warnings
+        known = KNOWN if question.other is None else Context(world=World(bodies=(CUBE,)))  # not in the floor
+        (warning,) = impact_questions.answer(question, known).warnings
         assert DECIDES.search(warning)
     (warning,) = impact_questions.answer(replace(stated, several_contacts_law=InTime()), KNOWN).warnings
     assert "does not determine their order" in warning
+
+
+def test_a_body_that_an_impact_drives_into_what_it_touches_is_a_warning() -> None:
+    """A ball of equal mass drops on a cube on the floor: the floor would have to take part."""
+    ball = Body.sphere(0.02, 0.37, name="ball")
+    on_top = ContactSet(p_WC_W=[[0, 0, 0.1]], normals_W=[0, 0, 1], frictions=0.3, restitutions=0.5)
+    lying = BodyState(p_WB_W=[0, 0, 0.05], q_WB=[0, 0, 0, 1])
+    dropped = BodyState(p_WB_W=[0, 0, 0.12], q_WB=[0, 0, 0, 1], v_WB_W=[0, 0, -1])
+    question = ImpactQuestion(body=ball, state=dropped, other="cube", other_state=lying, contacts=on_top)
+    answer = impact_questions.answer(question, KNOWN)
+    np.testing.assert_allclose(answer.impact.states[1].v_WB_W, [0.0, 0.0, -0.75], atol=1e-12)
+    into = "after the impact, 'cube' moves into 'floor', which it touches, at 0.75 m/s"
+    assert answer.warnings == (f"{into}: the contacts there were not part of the impact",)
+    lifted = replace(question, state=replace(dropped, p_WB_W=[0, 0, 1.12]))
+    lifted = replace(
+        lifted,
+        other_state=replace(lying, p_WB_W=[0, 0, 1.05]),
+        contacts=replace(on_top, p_WC_W=[[0, 0, 1.1]]),
+    )
+    assert impact_questions.answer(lifted, KNOWN).warnings == ()
+
+
+def test_an_impact_at_one_of_the_contacts_is_a_warning() -> None:
+    """A cube that slides on the floor and hits a wall with its upper edge would turn into the floor."""
+    wall = Surface(name="wall", p_WS_W=[0.05, 0, 0], normal_W=[-1, 0, 0], friction=0.0, restitution=0.5)
+    known = Context(world=World(bodies=(CUBE,), surfaces=(FLOOR, wall)))
+    sliding = replace(FLAT, v_WB_W=[1, 0, 0])
+    every = ImpactQuestion(body="cube", state=sliding, several_contacts_law=SeveralContactsLaw.SIMULTANEOUS)
+    assert impact_questions.answer(every, known).warnings == ()
+    one = ContactSet(p_WC_W=[[0.05, 0, 0.1]], normals_W=[-1, 0, 0], frictions=0.0, restitutions=0.5)
+    (warning,) = impact_questions.answer(replace(every, contacts=one), known).warnings
+    assert warning.startswith("after the impact, 'cube' moves into 'wall', which it touches, at ")
 
 
 def test_a_margin_that_is_not_known_is_a_warning() -> None:
