@@ -29,26 +29,25 @@ PAGE = ROOT / "docs" / "cases.md"
 HEAD = """\
 # Cases with exact answers, compared with MuJoCo
 
-This page compares this package with MuJoCo on problems that have an exact solution in closed form. Users of physics engines reported them,
-because the engine's result was an artefact of time steps and softened contacts. This command solves all of them with this package and, if
-it is installed, with MuJoCo:
+Each case on this page is a problem with an exact solution in closed form, which users of physics engines have reported because an engine
+returned another result. This command solves all of them with this package and, if it is installed, with MuJoCo:
 
 ```sh
 contact-dynamics cases
 ```
 
-`contact-dynamics cases NAME` solves one case, and `--list` prints the names. `--without-mujoco` skips the simulations, which take most of
-the time.
+`contact-dynamics cases NAME` solves one case, and `--list` prints the names.
 
-Each row of the table is one setting of a case, and its section defines the quantity and its unit. MuJoCo's numbers are from simulations
-with its default settings and time step, unless the code of the case sets others. For cases with a restitution, its contact is a spring and
-damper designed for that value and resolved by ten steps.
+Each row of the table is a case with one value of its parameter. The last three columns contain the value of the *quantity*: the exact
+solution, and the results of this package and of MuJoCo. An empty cell has the content of the cell above it. μ is the friction coefficient, e the coefficient of restitution, and g the
+acceleration of gravity.
 
-The numbers show how large an artefact can be with default settings; they are not a verdict on MuJoCo, which simulates whole robots with
-deliberately soft contacts, and is more accurate with smaller steps and other settings. [When to use a simulator](when-to-use-what.md)
-compares the two approaches. The package's answers are exact for rigid bodies with Coulomb friction; check separately whether a real system
-matches that model and its coefficients.
+{TABLE}
+MuJoCo uses its default settings and time step, unless the code of the case sets others. In cases with a restitution, its contact is a spring
+and damper designed for this restitution, with ten time steps in the impact. With smaller time steps and other settings, MuJoCo is more
+accurate. [When to use a simulator](when-to-use-what.md) compares the two approaches.
 
+The solutions are exact for rigid bodies with Coulomb friction. Check separately whether your system agrees with this model.
 """
 
 
@@ -77,15 +76,17 @@ def mujoco(name: str, i: int, measured: dict[str, str]) -> str:
 
 def table(measured: dict[str, str]) -> Iterator[str]:
     """Yield the lines of the table of all cases."""
-    yield "| case | setting | exact | this package | MuJoCo |"
-    yield "| --- | --- | --- | --- | --- |"
+    yield "| case | parameter | quantity | exact | this package | MuJoCo |"
+    yield "| --- | --- | --- | --- | --- | --- |"
     for name, case in CASES.items():
         for i, setting in enumerate(case.settings):
-            title = f"[{case.title}](#{anchor(case.title)})" if i == 0 else ""
+            title, quantity = (
+                (f"[{case.title}](#{anchor(case.title)})", case.quantity) if i == 0 else ("", "")
+            )
             exact, ours = (
                 shown(value, case.tolerance) for value in (case.exact(setting), OURS.answer(name, setting))
             )
-            yield f"| {title} | {label(case, setting)} | {exact} | {ours} | {mujoco(name, i, measured)} |"
+            yield f"| {title} | {label(case, setting)} | {quantity} | {exact} | {ours} | {mujoco(name, i, measured)} |"
 
 
 def source_of(name: str, case: Case) -> str:
@@ -133,8 +134,8 @@ def section(name: str, case: Case) -> str:
 
 {case.story} Discussed in {threads}.
 
-**Exact answer** ({case.quantity}): {case.formula}. The package agrees within {case.tolerance:g} ({case.why_tolerance}).
-`contact-dynamics cases {name}` solves it.
+**Exact solution** ({case.quantity}): {case.formula}. The package agrees within {case.tolerance:g}, in the same unit.
+`contact-dynamics cases {name}` solves this case.
 
 ```python
 {source_of(name, case)}
@@ -165,8 +166,7 @@ def published() -> str:
     return f"""\
 ## Published numbers
 
-This command compares the package with published numbers, and prints the source, the published and the computed number, the tolerance and
-the verdict for each:
+This command compares the package with results in textbooks:
 
 ```sh
 contact-dynamics cases --published
@@ -174,22 +174,22 @@ contact-dynamics cases --published
 
 {listed}
 
-{counts[PublishedVerdict.RIGHT]} agree within half of the last published digit or, if they were derived here, up to rounding error. {counts[PublishedVerdict.WRONG]}
-disagree without explanation. {counts[PublishedVerdict.EXPLAINED]} differ because the published number is inaccurate, for the reason printed below each:
+{counts[PublishedVerdict.RIGHT]} agree: within half of the last digit of a published number, or within rounding error of a derived one. {counts[PublishedVerdict.WRONG]} disagree without an explanation. {counts[PublishedVerdict.EXPLAINED]} disagree because
+the published number is inaccurate; the reason is printed below each:
 
 ```text
      published           ours  tolerance
 {rows}
 ```
 
-The data files in `contact_dynamics/cases/published_values/` contain each number with its exact source or its derivation.
+The files in `contact_dynamics/cases/published_values/` contain all numbers with their sources.
 """
 
 
 def page() -> str:
     """Return the whole page."""
     measured = quotes.texts(quotes.read())
-    lines = [HEAD + "\n".join(table(measured)) + "\n"]
+    lines = [HEAD.replace("{TABLE}", "\n".join(table(measured)) + "\n")]
     return "\n".join(lines + [section(name, case) for name, case in CASES.items()] + [published()])
 
 

@@ -133,13 +133,13 @@ CASES: Final = {
     "creeping_capsule": Case(
         title="A capsule that must stick on a slope",
         story="A capsule rests on a slope, with a friction limit many times its load along the slope. "
-        "Engines that regularize friction let it creep for as long as they run. With Coulomb friction it "
-        "does not move.",
+        "Engines that regularize friction, which approximate static friction by slow sliding, let it creep. "
+        "With Coulomb friction it does not move.",
         discussed="google-deepmind/mujoco/issues/3328 liabru/matter-js/issues/613",
         setting="friction limit over the load along the slope",
         settings=(20.0, 95.0),
         quantity="distance after 10 s, m",
-        formula="0, since tan(slope) = μ / margin is below μ",
+        formula="0, since tan(slope) is below μ",
         exact=lambda _: 0.0,
         tolerance=1e-12,
         why_tolerance="rounding error of g, multiplied by half of (10 s)²",
@@ -201,7 +201,7 @@ CASES: Final = {
         setting="distance from the fingertip to the centre, m",
         settings=(0.1,),
         quantity="angular acceleration, rad/s²",
-        formula="m g d / (I + m d²)",
+        formula="m g d / (I + m d²), with the distance d and the moment of inertia I",
         exact=lambda arm: _G * arm / (0.01 + arm * arm),
         tolerance=1e-11,
         why_tolerance="rounding error of numbers near 100, and of the spatial search",
@@ -213,8 +213,8 @@ CASES: Final = {
     ),
     "ladder": Case(
         title="A ladder against a smooth wall",
-        story="The foot holds if tan(angle) is at least 1 / (2 μ). Errors of approximate friction show at "
-        "such thresholds: bodies move too early.",
+        story="The foot holds if tan(angle) is at least 1 / (2 μ). With approximate friction, bodies move too "
+        "early at such thresholds.",
         discussed="raisimTech/raisimLib/issues/55 google-deepmind/mujoco/pull/3349",
         setting="angle below the limit, rad",
         settings=(-0.01, 0.01),
@@ -234,8 +234,9 @@ CASES: Final = {
     ),
     "jamming_drawer": Case(
         title="A peg or drawer that jams",
-        story="An off-centre push presses a peg, or a drawer, against both walls. Above a friction coefficient of"
-        " L / (2 d) it jams, regardless of the push force. Users saw pegs pass through walls, or not move at all.",
+        story="An off-centre push presses a peg, or a drawer, against both walls. It jams if the friction "
+        "coefficient exceeds L / (2 d), where L is its length between the walls, and d the distance of the push "
+        "from its axis. Users saw pegs pass through walls, or not move at all.",
         discussed="bulletphysics/bullet3/issues/2148 google-deepmind/mujoco/issues/1544",
         setting="μ (the limit is 1)",
         settings=(0.9, 1.1),
@@ -402,7 +403,7 @@ CASES: Final = {
         setting="spin, rad/s (negative: backspin)",
         settings=(-40.0, -80.0),
         quantity="forward velocity after the bounce, m/s",
-        formula="5/7 (v + 2/5 r ω)",
+        formula="5/7 (v + 2/5 r ω), with the velocity v before the bounce, the radius r and the spin ω",
         exact=lambda spin: 5.0 / 7.0 * (2.0 + 0.4 * 0.1 * spin),
         tolerance=1e-14,
         why_tolerance="rounding error of numbers near 10",
@@ -508,7 +509,7 @@ CASES: Final = {
         setting="spin about the minor axis, rad/s",
         settings=(0.1, 1e-06),
         quantity="period of the angular velocity in the body, s",
-        formula="4 K(m) / rate, from Jacobi's solution of Euler's equations",
+        formula="4 K(m) / rate, from Jacobi's solution of Euler's equations; K is the complete elliptic integral",
         exact=_flip_period,
         tolerance=1e-12,
         why_tolerance="rounding error of the distance from the intermediate axis, on whose logarithm the period depends",
