@@ -37,7 +37,6 @@ NOT_MEASURED: dict[
     ],
     "docs/diagnostics.md": ["or for 3 s", "For 10 s, responses"],
     "docs/performance.md": ["poses at 1 kHz", "after 100 s", "step 1 ms"],
-    "docs/architecture.md": ["it takes 0.1 s"],  # how long DDS waits, which is set there
     "docs/calibrate.md": [
         "the true values in 85 to 95 %",
         "More than 5 % of the tosses",
