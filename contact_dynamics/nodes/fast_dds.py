@@ -1,18 +1,17 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A fault of Fast DDS 2.14 that users would notice, and how our nodes get around it.
+"""A workaround for faults of Fast DDS 2.14 after a process is killed. Other middleware is unaffected.
 
-The whole file can go when a killed process and a new one no longer trouble the others without it:
-`test/nodes/test_found_at_once.py` and `python -m benchmarks.kills` measure that. With another middleware
-nothing here acts.
+The file can be removed when killed and restarted processes no longer disturb others without it, which
+`test/nodes/test_found_at_once.py` and `python -m benchmarks.kills` measure.
 
-A process that is killed can leave a lock behind in shared memory, the default on one machine, that blocks
-whoever writes to it next, and others go on to write into its memory for one to three seconds, also if a new
-process has its port by then. So by the profile of our nodes messages come in over UDP, at a port that differs
-at each start: at the port of a killed process, others answer the new one a second later. The node announces
-itself every `_ANNOUNCED_EVERY_S` instead of every three seconds, since a restarted client mostly misses the
-first announcement. Messages that nobody confirmed are announced again every `_ASKED_EVERY_S` instead of every
-three seconds: a restarted client has the port of the killed one, so that it misses the first answers. A
-user's own profile takes the place of this one.
+A killed process can leave a lock in shared memory, the default on one machine, which blocks the next writer.
+Others continue to write to its memory for one to three seconds, even if a new process has its port. The
+profile of our nodes therefore receives messages over UDP, at a port that differs at each start, because
+others answer a process at the port of a killed one a second later. The node announces itself every
+`_ANNOUNCED_EVERY_S` instead of every three seconds, since a restarted client usually misses the first
+announcement. Unconfirmed messages are announced every `_ASKED_EVERY_S` instead of every three seconds,
+because a restarted client at the port of the killed one misses the first responses. A profile of the user
+replaces this one.
 """
 
 from __future__ import annotations
@@ -36,7 +35,7 @@ FIRST_PORT: Final = 7400  # first port of domain 0
 PORTS_OF_DOMAIN: Final = 250
 
 PORTS_OF_PARTICIPANT: Final = 2
-"""Ports that a participant takes. Each is that of the participant before it and this many more."""
+"""Number of ports of a participant, which is the distance between the ports of two participants."""
 
 _TABLES: Final = (Path("/proc/net/udp"), Path("/proc/net/udp6"))
 _LOCAL_PORT: Final = re.compile(r"^ *\d+: [0-9A-F]+:([0-9A-F]{4}) ", re.MULTILINE)
@@ -54,22 +53,21 @@ def ports_in_use() -> set[int]:
 
 
 IS_VERSION_3: Final = int(version("rclpy").partition(".")[0]) > 7
-"""Whether Fast DDS is that of Kilted or newer, which renamed what its profiles are found and made of."""
+"""Whether Fast DDS is that of Kilted or newer, with other names of profiles and their elements."""
 
 VARIABLE: Final = "FASTDDS_DEFAULT_PROFILES_FILE" if IS_VERSION_3 else "FASTRTPS_DEFAULT_PROFILES_FILE"
 _IN_THIS_FOLDER: Final = "DEFAULT_FASTDDS_PROFILES.xml" if IS_VERSION_3 else "DEFAULT_FASTRTPS_PROFILES.xml"
 
 _ANNOUNCED_EVERY_S: Final = 0.5
-"""s. 64 small messages a second to this machine, which take half a thousandth of a processor."""
+"""s. This sends 64 small messages per second to this machine, which use 0.05 % of a processor."""
 
 _ASKED_EVERY_S: Final = 0.1  # s. Only writers with unconfirmed messages ask.
 
 FIRST_OFFSET: Final = 101
-"""Ports count from the first one of the domain. Below are those that Fast DDS chooses for 45 participants."""
+"""Offset from the first port of the domain, above the ports that Fast DDS chooses for 45 participants."""
 
 PORTS: Final = 60
-"""They are `PORTS_OF_PARTICIPANT` apart, and end so far below the next domain that ten further participants
-find one."""
+"""Number of ports, `PORTS_OF_PARTICIPANT` apart. Ten further participants have room below the next domain."""
 
 _PROFILE: Final = """<?xml version="1.0" encoding="UTF-8"?>
 <profiles xmlns="http://www.eprosima.com/XMLSchemas/fastRTPS_Profiles">
@@ -93,9 +91,9 @@ _PROFILE: Final = """<?xml version="1.0" encoding="UTF-8"?>
 
 @contextmanager
 def profile_of_fast_dds() -> Iterator[None]:
-    """Give participants that are made meanwhile the profile, unless the user has one.
+    """Set the profile for participants that are created in this context, unless the user has one.
 
-    The environment is as before afterwards, so that processes that are started later do not inherit it.
+    The environment is restored at the end, so that later processes do not inherit the profile.
     """
     if os.environ.get(VARIABLE) or Path(_IN_THIS_FOLDER).exists():
         yield
@@ -107,7 +105,7 @@ def profile_of_fast_dds() -> Iterator[None]:
         period="heartbeat_period" if IS_VERSION_3 else "heartbeatPeriod",
     )
     with ExitStack() as stack:
-        with suppress(OSError):  # where no file can be written, Fast DDS goes by its own choice
+        with suppress(OSError):  # without a file, Fast DDS uses its defaults
             file = stack.enter_context(tempfile.NamedTemporaryFile("w", suffix=".xml"))
             file.write(text)
             file.flush()

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Makes a node the source of its parameters, and refuses files of parameters that have none for it."""
+"""Reads and declares the parameters of a node, and rejects parameter files without any for it."""
 
 from __future__ import annotations
 
@@ -32,10 +32,10 @@ if TYPE_CHECKING:
 
 
 class NodeParameters(ParameterSource):
-    """The values that a node was given. What is read is declared at the node.
+    """The values of a node's parameters. A parameter is declared when it is read.
 
-    Where a file gives a parameter a value of one type and `-p` another of a type that ROS looks at later, ROS
-    keeps that of the file: `-p log:=0` beside `log: true` would go on logging. Here `-p` counts.
+    If the values of a parameter in a file and in `-p` have different types, such as `log: true` and
+    `-p log:=0`, ROS may use that of the file. Here, `-p` overrides the file.
     """
 
     def __init__(
@@ -46,17 +46,10 @@ class NodeParameters(ParameterSource):
         also_known: Iterable[str] = (),
         read_only: bool,
     ) -> None:
-        """Declare at this node.
-
-        Args:
-            node: the node.
-            ros_arguments: ROS's arguments.
-            also_known: names of parameters that may be given besides.
-            read_only: whether the parameters stay as they are from then on.
-        """
+        """Set the node, ROS's arguments, further allowed names, and whether parameters are read-only."""
         self._node = node
         self._read_only = read_only
-        self._overrides = node._parameter_overrides  # noqa: SLF001  rclpy has no public way to what was given
+        self._overrides = node._parameter_overrides  # noqa: SLF001  rclpy has no public access
         values = {name: plain(each.value) for name, each in self._overrides.items()}
         values |= values_given(ros_arguments, node.get_fully_qualified_name())
         of_ros = node._parameters  # noqa: SLF001  as above
@@ -81,7 +74,7 @@ class NodeParameters(ParameterSource):
         return found
 
     def declare(self, parameter: DeclaredParameter) -> None:
-        """Declare a parameter that has come with a change, whatever a file says of it."""
+        """Declare a parameter after a change, without the override of a file."""
         name, value, description, bounds = parameter
         descriptor = self._descriptor(value, description, bounds)
         self._node.declare_parameter(name, value, descriptor, ignore_override=True)
@@ -107,14 +100,10 @@ class NodeParameters(ParameterSource):
 
 
 def refuse_lost_sections(node: Node, arguments: Sequence[str]) -> None:
-    """Refuse files of parameters that have none for a node; warn of sections that miss it by a few letters.
-
-    Args:
-        node: the node.
-        arguments: ROS's arguments, which name the files.
+    """Reject parameter files in ROS's arguments without parameters for a node; warn of similar names.
 
     Raises:
-        ConfigurationError: a file has no parameters for the node. The message names whose it has.
+        ConfigurationError: a file has no parameters for the node. The message lists its sections.
     """
     full_name = node.get_fully_qualified_name()
     found = [(path, read_sections(path)) for path in map(Path, files_given(arguments))]

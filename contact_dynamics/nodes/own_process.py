@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What a node does to its own process before it starts: its memory, its output, and ROS's log files."""
+"""Settings of a node's own process: its memory, its output, and ROS's log files."""
 
 from __future__ import annotations
 
@@ -14,19 +14,18 @@ from typing import Final
 
 _M_MMAP_THRESHOLD: Final = -3  # as malloc.h of glibc has it
 _THRESHOLD: Final = 64 * 1024
-"""bytes, below the pieces of the services. glibc begins with twice as much, and raises it with each piece
-that is freed unless it is set."""
+"""Bytes, less than the buffers of the services. glibc starts with twice as much, and raises it with each
+freed buffer unless it is set."""
 
 
 def keep_reserved_memory_untouched() -> None:
-    """Let large pieces of memory always be fresh ones. Without glibc there is nothing to do.
+    """Allocate large buffers by fresh memory maps. Without glibc, this does nothing.
 
-    DDS sets aside room for messages as large as their lists may be, for each writer and reader: a hundred
-    pieces, each of some 100 kB for the services and of megabytes for some topics. Fresh memory costs nothing
-    before it is written to. But glibc takes pieces from its heap once a process has freed some, and clears
-    them, so that all of the room is found at once. A process that made server and visualizer for the third
-    time took 7 GB in place of 0.1 GB, and a server grew by 6 MB each time that it was cleaned up and
-    configured. Pieces above a threshold are always fresh, and go back to the machine when they are freed.
+    DDS reserves a buffer for the largest possible message of each writer and reader: a hundred buffers, of
+    some 100 kB for services and of megabytes for some topics. Fresh memory costs nothing until it is written.
+    Once a process has freed some, however, glibc takes such buffers from its heap and clears them. A process
+    that created server and visualizer for the third time used 7 GB instead of 0.1 GB, and a server grew by
+    6 MB with each lifecycle transition. Buffers above a threshold are always mapped, and unmapped when freed.
     """
     mallopt = getattr(ctypes.CDLL(None), "mallopt", None)
     if mallopt is not None:
@@ -37,26 +36,25 @@ _OUTPUTS: Final = (1, 2)
 
 
 def never_wait_for_readers() -> None:
-    """Let lines get lost that go to a pipe which is full. Others with the same pipe wait as before.
+    """Discard output to a full pipe instead of blocking. Other processes with the same pipe still block.
 
-    A pipe holds 64 kB. Whoever starts a node and does not read its output would stop it at the next line once
-    that is full, and ROS prints six lines for each message that is none.
+    A pipe holds 64 kB. Without this, a node whose output nobody reads would stop once the pipe is full, and
+    ROS prints six lines for each invalid message.
     """
     for output in _OUTPUTS:
-        with suppress(OSError):  # it is closed, or another user's
+        with suppress(OSError):  # closed, or owned by another user
             if stat.S_ISFIFO(os.fstat(output).st_mode):
-                # To open it anew makes a way of this process alone. The one that it was given may be shared.
+                # A reopened pipe has flags of its own; the inherited descriptor may be shared.
                 own = os.open(f"/proc/self/fd/{output}", os.O_WRONLY | os.O_NONBLOCK)
                 os.dup2(own, output)
                 os.close(own)
 
 
 def ensure_ros_log_directory() -> None:
-    """Let this process and its children log to a temporary folder if home cannot be written.
+    """Let this process and its children log to a temporary folder if home is not writable.
 
-    rclpy does not start without a folder for its log files. It is looked for as rcl does, in ROS_LOG_DIR,
-    ROS_HOME/log or ~/.ros/log. A folder that the user has named with ROS_LOG_DIR is left as it is, so that
-    rclpy refuses it by name.
+    rclpy does not start without a folder for its log files, which is ROS_LOG_DIR, ROS_HOME/log or ~/.ros/log.
+    A folder in ROS_LOG_DIR is unchanged, so that the error of rclpy names it.
     """
     if os.environ.get("ROS_LOG_DIR"):
         return

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Reads files of parameters without ROS, and finds the mistakes in them that ROS does not report.
+"""Reads parameter files without ROS, and finds mistakes in them that ROS does not report.
 
-ROS gives a node the parameters of all sections whose name fits its full name, and says nothing of the others,
-so a misspelled name costs all parameters of its section. YAML forbids repeated keys, but ROS silently takes
-the last one. A later section counts more than an earlier. Nested names are joined by points: ``body: {brick:
-{mass: 0.4}}`` is ``body.brick.mass``.
+ROS passes a node the parameters of all sections that match its full name, and ignores other sections
+silently, such as one with a misspelled name. YAML forbids repeated keys, but ROS silently uses the last one.
+Later sections override earlier ones. Nested names are joined by points: ``body: {brick: {mass: 0.4}}`` is
+``body.brick.mass``.
 """
 
 from __future__ import annotations
@@ -26,8 +26,8 @@ if TYPE_CHECKING:
 ANY_NODE: Final = "/**"  # the name of a section that is for every node
 
 _VALUES: Final = "ros__parameters"
-_MERGE: Final = "<<"  # a key of YAML itself
-_ALIKE: Final = 0.9  # the share of equal letters; a name of 16 letters with two that are swapped has 0.94
+_MERGE: Final = "<<"  # a key of YAML
+_ALIKE: Final = 0.9  # share of equal letters; a name of 16 letters with two swapped letters has 0.94
 _NUMBER: Final = re.compile(r"[_\d]+$")
 _FILE: Final = "--params-file"
 _GIVEN: Final = re.compile(r"(?:([^:=]+):)?([^:=]+):=(.*)", re.DOTALL)
@@ -41,8 +41,8 @@ class Section(NamedTuple):
     repeated: tuple[str, ...] = ()  # a sentence for each parameter that it contains more than once
 
     def is_for(self, full_name: str) -> bool:
-        """Tell whether a node of this full name gets the parameters."""
-        # The replacement makes "(/\w+)*" of "/**", which is what that means.
+        """Return whether a node of this full name gets the parameters."""
+        # The replacement turns "/**" into "(/\w+)*".
         return re.fullmatch(self.node.replace("/*", r"(/\w+)"), full_name) is not None
 
 
@@ -50,10 +50,9 @@ def read_sections(path: Path) -> tuple[Section, ...]:
     """Return the sections of a file.
 
     Raises:
-        ConfigurationError: the file cannot be read, is no YAML, or has something else than sections, or one
-            of them twice.
+        ConfigurationError: the file cannot be read, is not YAML, or does not consist of different sections.
     """
-    import yaml  # only who is configured by a file needs it
+    import yaml  # only nodes with a parameter file need it
 
     try:
         text = path.read_text(encoding="utf-8")
@@ -61,7 +60,7 @@ def read_sections(path: Path) -> tuple[Section, ...]:
         message = f"{path}: cannot be read: {error}"
         raise ConfigurationError(message) from None
     try:
-        loader = getattr(yaml, "CSafeLoader", yaml.SafeLoader)(text)  # the former is ten times as fast
+        loader = getattr(yaml, "CSafeLoader", yaml.SafeLoader)(text)  # ten times as fast
         root = loader.get_single_node()
         if _items(root):
             return tuple(_sections(path, root, "", construct=loader.construct_document))
@@ -75,7 +74,7 @@ def read_sections(path: Path) -> tuple[Section, ...]:
 def _sections(
     path: Path, mapping: Any, above: str, *, construct: Callable[[Any], dict[str, Any]]
 ) -> Iterator[Section]:
-    """Yield the sections in a mapping of names, as nodes of PyYAML."""
+    """Yield the sections in a mapping of names, which is a node of PyYAML."""
     lines: dict[str, int] = {}
     for key, inner in mapping.value:
         name, line = f"{above}{absolute(str(key.value))}", key.start_mark.line + 1
@@ -93,15 +92,15 @@ def _sections(
 
 
 def _items(node: Any) -> list[tuple[Any, Any]]:
-    """Return the keys and values of a node of PyYAML, of which one that is no mapping has none."""
+    """Return the keys and values of a node of PyYAML, or none if it is not a mapping."""
     return node.value if getattr(node, "id", "") == "mapping" else []
 
 
 def _repeated(parameters: Any) -> Iterator[str]:
-    """Yield in words which parameter, or which group of them, stands in a section more than once.
+    """Yield a sentence for each parameter, or group of parameters, that a section contains more than once.
 
-    A parameter can be written in one word or nested: ``body.brick.mass: 1.0`` and
-    ``body: {brick: {mass: 2.0}}`` are the same one. A group may be opened in both ways.
+    ``body.brick.mass: 1.0`` and ``body: {brick: {mass: 2.0}}`` are the same parameter. A group may be written
+    in both ways.
     """
     lines: dict[str, int] = {}
     for path, line, is_leaf in _keys(parameters, ()):
@@ -111,7 +110,7 @@ def _repeated(parameters: Any) -> Iterator[str]:
 
 
 def _keys(node: Any, above: tuple[str, ...]) -> Iterator[tuple[tuple[str, ...], int, bool]]:
-    """Yield each key of a node with those above it, its line, and whether its value is no mapping."""
+    """Yield each key of a node with its parents, its line, and whether its value is not a mapping."""
     for key, value in _items(node):
         if key.value != _MERGE:
             path = (*above, str(key.value))
@@ -120,16 +119,10 @@ def _keys(node: Any, above: tuple[str, ...]) -> Iterator[tuple[tuple[str, ...], 
 
 
 def check_sections(path: Path, sections: Sequence[Section], full_name: str) -> str:
-    """Return a warning of a section that was probably meant for a node and misses it, or an empty text.
-
-    Args:
-        path: the file.
-        sections: its sections.
-        full_name: the name of the node with its namespace.
+    """Return a warning if a section's name is nearly that of a node, ``full_name``, or an empty text.
 
     Raises:
-        ConfigurationError: the file has no section for the node, so that it says nothing to it, or one of
-            them has a parameter twice, of which ROS would take the last.
+        ConfigurationError: the file has no section for the node, or one that contains a parameter twice.
     """
     twice = [each for section in sections if section.is_for(full_name) for each in section.repeated]
     if twice:
@@ -153,7 +146,7 @@ def check_sections(path: Path, sections: Sequence[Section], full_name: str) -> s
 
 
 def files_given(arguments: Sequence[str]) -> list[str]:
-    """Return the files of parameters that ROS's arguments name."""
+    """Return the parameter files in ROS's arguments."""
     return [path for flag, path in pairwise(arguments) if flag == _FILE]
 
 
@@ -163,7 +156,7 @@ def nodes_given(arguments: Sequence[str]) -> list[str]:
 
 
 def values_given(arguments: Sequence[str], full_name: str) -> dict[str, Any]:
-    """Return the values of the parameters that ROS's arguments give to a node of this full name."""
+    """Return the values of parameters in ROS's arguments for a node of this full name."""
     return {
         match[2]: _value_of(match[3].strip())
         for match in _given(arguments)
@@ -184,7 +177,7 @@ def _nearest(names: Sequence[str], full_name: str) -> str:
 
 
 def _is_misspelled(name: str, full_name: str) -> bool:
-    """Tell whether a name is nearly that of a node; several nodes may be numbered, or differ in namespace."""
+    """Return whether a name is nearly that of a node. Numbered names and other namespaces do not count."""
     own, wanted = name.rpartition("/")[2], full_name.rpartition("/")[2]
     if _NUMBER.sub("", own) == _NUMBER.sub("", wanted):
         return False
@@ -200,24 +193,22 @@ _NODE: Final = f"/{NODE_NAME}"
 
 
 class ParameterFile(ParameterSource):
-    """The values in a file, with other topics for some bodies."""
+    """The values in a file, with other topics for some bodies if given."""
 
     def __init__(self, path: Path, topics: Sequence[str] = ()) -> None:
         """Read the file.
 
-        Args:
-            path: a file of parameters, as `config/server.yaml`.
-            topics: where states are, as "BODY=ODOMETRY_TOPIC" or "BODY=POSE_TOPIC,TWIST_TOPIC". This counts
-                before what the file says.
+        The ``topics`` of states, "BODY=ODOMETRY_TOPIC" or "BODY=POSE_TOPIC,TWIST_TOPIC", override those in
+        the file.
 
         Raises:
-            ConfigurationError: it is missing, no YAML, or has no parameters of the server; or it has those of
-                a node whose name is nearly the server's; or a text in ``topics`` has another form.
+            ConfigurationError: the file is missing, is not YAML, or has no parameters of the server; or it
+                has a section with nearly the server's name; or a text in ``topics`` has another form.
         """
         sections = read_sections(path)
         warning = check_sections(path, sections, _NODE)
         if warning:
-            raise ConfigurationError(warning)  # nobody else is configured by what is read here
+            raise ConfigurationError(warning)  # the file configures only the server here
         values: dict[str, Any] = {}
         for section in sections:
             if section.is_for(_NODE):
@@ -237,7 +228,7 @@ def _flat(given: dict[str, Any], prefix: str = "") -> Iterator[tuple[str, Any]]:
 
 
 def values_of(config: Path | None, settings: Sequence[str]) -> dict[str, Any]:
-    """Return the values of a file of parameters and of texts "name:=value", which count more.
+    """Return the values of a parameter file, overridden by texts "name:=value".
 
     Raises:
         ConfigurationError: the file has no parameters, or a text has another form.
@@ -253,11 +244,11 @@ def values_of(config: Path | None, settings: Sequence[str]) -> dict[str, Any]:
 
 
 def _value_of(text: str) -> Any:
-    """Return the value of a text of the command line. What is no value of a parameter stays a text."""
+    """Return the value in a text of the command line. Any other text is a value itself."""
     import yaml
 
     try:
-        found = json.loads(text)  # it knows 1e3 as a number, and YAML does not
+        found = json.loads(text)  # in YAML, 1e3 is not a number
     except ValueError:
         try:
             found = yaml.safe_load(text)

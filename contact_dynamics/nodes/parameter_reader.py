@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Reads parameters of the nodes, and rejects by name what is not allowed and what no parameter has.
+"""Reads the parameters of the nodes, and rejects invalid values and unknown names.
 
-This file imports no ROS. The values are plain ones by the parameters' names. They come from a node
-(`node_parameters`), from a file (`parameter_file`), or from the log of a run that is over (`run_record`).
+This file imports no ROS. The values come from a node (`node_parameters`), from a file (`parameter_file`), or
+from the log of an earlier run (`run_record`).
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ NODE_NAME: Final = "contact_dynamics"  # the name of the server's node
 
 
 class ConfigurationError(ContactDynamicsError):
-    """A parameter is missing or not allowed. The message names it."""
+    """A parameter is missing or invalid. The message names it."""
 
 
 class DeclaredParameter(NamedTuple):
@@ -47,12 +47,12 @@ class ConfiguredTopic:
 
 
 class ParameterSource:
-    """Values of parameters, from which they are read. Every mistake becomes a `ConfigurationError`.
+    """Values of parameters. Reading an invalid one raises a `ConfigurationError`.
 
     Attributes:
         values: Plain values by the parameters' names.
-        read: The parameters that were read, by name, with their values.
-        topics: The full names of the topics that were read, by parameter.
+        read: The parameters read so far, by name, with their values.
+        topics: The full names of the topics read so far, by parameter.
     """
 
     def __init__(
@@ -63,13 +63,13 @@ class ParameterSource:
         also_known: Iterable[str] = (),
         resolve: Callable[[str, str], str] | None = None,
     ) -> None:
-        """Take the values.
+        """Set the values.
 
         Args:
-            values: plain values by the parameters' names.
-            origin: where they come from, which begins each complaint.
-            also_known: names that may be given although nothing reads them.
-            resolve: finds the full name of a topic, as `resolved_topic`. Without it, nothing is remapped.
+            values: values by the parameters' names.
+            origin: prefix of each error message.
+            also_known: names of parameters that are allowed but not read.
+            resolve: returns the full name of a topic, like `resolved_topic`, which remaps nothing.
         """
         self.values = values
         self.read: dict[str, DeclaredParameter] = {}
@@ -86,12 +86,12 @@ class ParameterSource:
 
         Args:
             name: the name of the parameter.
-            default: its value if none is given. The type `float` makes the parameter mandatory.
-            description: what it means, for people.
-            bounds: least and greatest value.
+            default: its default. The type `float` makes the parameter mandatory.
+            description: its description.
+            bounds: its smallest and largest value.
 
         Raises:
-            ConfigurationError: there is no value, or it has another type or is out of bounds.
+            ConfigurationError: the value is missing, has another type, or is out of bounds.
         """
         found = self.values.get(name)
         if found is None and default is float:
@@ -109,7 +109,7 @@ class ParameterSource:
     def zero_or(
         self, name: str, default: float, description: str, bounds: tuple[float, float], *, unit: str
     ) -> float | None:
-        """Return a number within bounds, or None for zero, which stands for none."""
+        """Return a number within bounds, or None if it is zero."""
         least, most = bounds
         found: float = self.value(name, default, description, (0.0, most))
         if 0.0 < found < least:
@@ -124,12 +124,10 @@ class ParameterSource:
         /,
         **fields: tuple[str, tuple[float, float]],
     ) -> T:
-        """Return a dataclass whose fields are parameters, with the values of ``default`` as theirs.
+        """Return a dataclass whose fields are parameters, with the defaults in ``default``.
 
-        Args:
-            default: The defaults.
-            names: The parameter of each field that is not named as the field is.
-            fields: The description and the bounds of each.
+        ``fields`` contains the description and the bounds of each, and ``names`` the parameter's name of each
+        field that has another name.
         """
         values = {
             field: self.value((names or {}).get(field, field), getattr(default, field), description, bounds)
@@ -138,11 +136,11 @@ class ParameterSource:
         return replace(default, **values)  # type: ignore[type-var]  # only dataclasses are given
 
     def name(self, name: str, default: str, description: str) -> str:
-        """Return a name of something, which cannot be empty."""
+        """Return a name, which must not be empty."""
         return _checked_name(name, self.value(name, default, description))
 
     def names(self, name: str, description: str) -> list[str]:
-        """Return the names in a list. An empty one alone stands for none, since ROS knows no empty lists."""
+        """Return the names in a list. A single empty name means none, since ROS has no empty lists."""
         given: list[str] = self.value(name, [""], description)
         if given == [""]:
             return []
@@ -153,7 +151,7 @@ class ParameterSource:
         return found
 
     def topic(self, name: str, description: str) -> ConfiguredTopic | None:
-        """Return a topic that no other parameter names, or None if there is none."""
+        """Return a topic, which no other parameter may have, or None if the parameter is empty."""
         topic: str = self.value(name, "", description)
         if not topic:
             return None
@@ -165,7 +163,7 @@ class ParameterSource:
         return found
 
     def topics_of(self, name: str, description: str) -> tuple[ConfiguredTopic, ...]:
-        """Return the topics of a list, which several bodies may share."""
+        """Return the topics in a list, which several bodies may share."""
         return tuple(
             self._configured(f"{name}[{i}]", topic) for i, topic in enumerate(self.names(name, description))
         )
@@ -175,10 +173,10 @@ class ParameterSource:
         return ConfiguredTopic(name=topic, full_name=full_name, parameter=parameter)
 
     def resolved_topic(self, name: str, topic: str) -> str:
-        """Return the full name of the topic that a parameter names.
+        """Return the full name of the topic in a parameter.
 
         Raises:
-            ConfigurationError: the name is not that of a topic.
+            ConfigurationError: the name is invalid.
         """
         if self._resolve is not None:
             resolved = self._resolve(name, topic)
@@ -191,7 +189,7 @@ class ParameterSource:
 
     @staticmethod
     def build(prefix: str, make: Callable[[], T]) -> T:
-        """Return what ``make`` builds. A field that it refuses is named as the parameter ``prefix.field``."""
+        """Return what ``make`` builds. Errors name a field as the parameter ``prefix.field``."""
         try:
             return make()
         except InvalidFieldError as error:
@@ -200,16 +198,16 @@ class ParameterSource:
             raise ConfigurationError(message) from None
 
     def refuse_unknown(self, known: Iterable[str]) -> None:
-        """Refuse parameters that are given and not known, but for overrides of the quality of service.
+        """Reject unknown parameters, except for overrides of the quality of service.
 
         Raises:
-            ConfigurationError: there are such. The message names each, with the most similar known one.
+            ConfigurationError: there are unknown ones. The message contains the most similar known names.
         """
         given = [name for name in self.values if not is_of_ros(name)]
         self._refuse_others(given, {*known, *self._also_known})
 
     def refuse_unknown_overrides(self) -> None:
-        """Refuse overrides of the quality of service of topics that were not read; it raises as above."""
+        """Reject overrides of the quality of service of topics that were not read, as above."""
         overrides = {
             f"{_QOS}.{topic}.subscription.{policy}" for topic in self.topics.values() for policy in _POLICIES
         }
@@ -246,11 +244,11 @@ _IN_WORDS: Final = {
     str: "a text",
     list: "a list, such as [1.0]",
 }
-"""The types of parameters, in the words of an error."""
+"""The types of parameters in errors."""
 
 
 def _as_default(value: Any, default: Any) -> tuple[Any, str]:
-    """Return a value as one of the type of a default, or what it would have to be."""
+    """Return a value as the type of a default, and the allowed type in words if it has another one."""
     kind: type[Any] = default if isinstance(default, type) else type(default)
     if kind is float and type(value) is int:
         return float(value), ""
@@ -273,12 +271,12 @@ def _checked_name(parameter: str, name: str) -> str:
 _OF_ROS: Final = re.compile(r"use_sim_time|start_type_description_service")
 _QOS: Final = "qos_overrides"
 _POLICIES: Final = ("history", "depth", "reliability")
-"""What ROS lets parameters override of a subscription, unless a node asks for more."""
+"""The policies of a subscription that parameters can override by default."""
 _MEANT: Final = {"radius": "sphere", "size": "box", "com": "center_of_mass", "mu": "friction"}
-"""Names that others have for a parameter, with ours."""
+"""Names of parameters in other software, with ours."""
 _LISTED_BY: Final = {"body": "bodies", "surface": "surfaces"}
 
 
 def is_of_ros(name: str) -> bool:
-    """Tell whether a parameter is one that ROS gives every node."""
+    """Return whether a parameter is one that every node of ROS has."""
     return _OF_ROS.fullmatch(name) is not None or name.startswith(f"{_QOS}.")

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""How a run is configured, as its log records it, at the beginning and at each change. Reading needs no ROS.
+"""The record of a run's configuration in its log, at the beginning and at each change. Reading needs no ROS.
 
-`PARAMETERS` and `TOPICS` are JSON, so that a number, a text and a list stay what they are, to the last bit. A
-change is an event of ROS, `rcl_interfaces/ParameterEvent`, at the time from which on it counts.
+`PARAMETERS` and `TOPICS` are JSON, which preserves types and all bits. A change is an event of ROS,
+`rcl_interfaces/ParameterEvent`, logged at the time from which it applies.
 """
 
 from __future__ import annotations
@@ -30,9 +30,9 @@ TOPICS: Final = "state_topics"
 
 
 def versions_here() -> dict[str, str]:
-    """Return the versions that the last bits of an answer depend on.
+    """Return the versions that affect the last bits of an answer.
 
-    The platform has the kind of processor, and the C library, whose sines Python uses.
+    The platform includes the processor type and the C library, whose sines Python uses.
     """
     libraries = {name: version(name) for name in ("numpy", "scipy")}
     return {
@@ -44,24 +44,19 @@ def versions_here() -> dict[str, str]:
 
 
 def run_record(parameters: Mapping[str, Any], topics: Mapping[str, str]) -> dict[str, str]:
-    """Return the log's record of a run, by plain values. The log itself adds the package's version."""
+    """Return the log's record of a run. The log itself adds the package's version."""
     versions = {name: text for name, text in versions_here().items() if name != "version"}
     return {**versions, PARAMETERS: json.dumps(dict(parameters)), TOPICS: json.dumps(dict(topics))}
 
 
 class LoggedParameters(ParameterSource):
-    """The record of a run as the source of its parameters. What the server lacked has its default."""
+    """The parameters in the record of a run. Missing ones have their defaults."""
 
     def __init__(self, run: Mapping[str, str], instead: Mapping[str, Any] | None = None) -> None:
-        """Read a record that `run_record` wrote.
-
-        Args:
-            run: the record.
-            instead: values that count instead of those in it, from the log's beginning to its end, also where
-                the log tells of a change of theirs.
+        """Read a record of `run_record`. The values ``instead`` replace those in the log until its end.
 
         Raises:
-            ConfigurationError: no server wrote this record.
+            ConfigurationError: the record is invalid.
         """
         self._instead = dict(instead or {})
         try:
@@ -74,7 +69,7 @@ class LoggedParameters(ParameterSource):
         super().__init__({**self._logged, **self._instead}, also_known=[*self._logged, *PARAMETERS_OF_OTHERS])
 
     def changed(self, values: Mapping[str, Any]) -> LoggedParameters:
-        """Return the parameters after a change, which names those that changed; None is one that is gone."""
+        """Return the parameters after a change of some values. None removes a parameter."""
         merged = {**self._logged, **values}
         after = {name: value for name, value in merged.items() if value is not None}
         return LoggedParameters(run_record(after, self._logged_topics), self._instead)
@@ -87,7 +82,7 @@ class LoggedParameters(ParameterSource):
 
 
 def plain(value: Any) -> Any:
-    """Return the value of a parameter as JSON takes it, and as the parameters of a log are."""
+    """Return the value of a parameter in a form for JSON and for the record of a run."""
     return value if isinstance(value, (bool, int, float, str, type(None))) else list(value)
 
 
@@ -107,7 +102,7 @@ _FIELDS: Final = (
     "double_array_value",
     "string_array_value",
 )
-"""The field of a value, by the number of its type."""
+"""The name of the field that contains a value, by the number of its type."""
 
 
 class _Parameter(Protocol):
@@ -116,7 +111,7 @@ class _Parameter(Protocol):
 
 
 class ParameterEvent(Protocol):
-    """What the message has, of ROS or of a log."""
+    """The fields of the message, from ROS or from a log."""
 
     node: str
     new_parameters: Iterable[_Parameter]
@@ -125,7 +120,7 @@ class ParameterEvent(Protocol):
 
 
 def changed_values(event: ParameterEvent) -> dict[str, Any]:
-    """Return the values of an event by the parameters' names, and None for those that are gone."""
+    """Return the values of an event by the parameters' names, with None for removed ones."""
     values: dict[str, Any] = {each.name: None for each in event.deleted_parameters}
     for each in (*event.new_parameters, *event.changed_parameters):
         field = _FIELDS[each.value.type]
@@ -134,14 +129,8 @@ def changed_values(event: ParameterEvent) -> dict[str, Any]:
 
 
 def event_of_change(node: Node, before: Mapping[str, Any], after: Mapping[str, Any]) -> bytes | None:
-    """Return a change of a node's parameters as the bytes of an event, or None if nothing changed.
-
-    Args:
-        node: the node, whose clock stamps the event.
-        before: the plain values by name.
-        after: the same after the change.
-    """
-    from rcl_interfaces.msg import Parameter as ParameterMsg  # here, for logs are read without ROS
+    """Return a change of a node's parameters as the bytes of an event, or None if nothing changed."""
+    from rcl_interfaces.msg import Parameter as ParameterMsg  # imported here, since logs are read without ROS
     from rcl_interfaces.msg import ParameterEvent as EventMsg
     from rclpy.parameter import Parameter
     from rclpy.serialization import serialize_message

@@ -1,8 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What a server answers from, live or where its log is replayed, without ROS.
+"""The core of a server without ROS: its configuration, its states and their sources, and the present time.
 
-It has the configuration with its changes, the published states and what reads them, and the time of the
-present question. The node (`server`), the replay of its log (`replay.again`) and the visualizer share it.
+The node (`server`), the replay of its log (`replay.again`) and the visualizer share it.
 """
 
 from __future__ import annotations
@@ -26,22 +25,22 @@ if TYPE_CHECKING:
 
 
 class ServerCore:
-    """What a server answers from.
+    """The configuration of a server, and the context of its answers.
 
     Attributes:
         parameters: The configuration.
-        states: The states that were published.
-        sources: The topics that states come by, by their full names.
-        context: What is known when a question is asked. Another one takes its place at a change.
-        asked_ns: ns by the clock of the states, when the present question came. Zero means that this is not
-            known, as before a simulation tells the time.
+        states: The published states.
+        sources: The topics of states, by their full names.
+        context: The context of questions, which a change replaces.
+        asked_ns: Time of arrival of the present question, ns on the clock of the states, or zero if it is
+            unknown, such as before the first time of a simulation.
     """
 
     def __init__(self, parameters: ServerParameters, states: StateStore | None = None) -> None:
-        """Begin without states, which ``states`` keeps if it is given.
+        """Begin without states. They are stored in ``states`` if it is given.
 
         Raises:
-            ConfigurationError: a source of states is not there, or is not allowed (`state_sources`).
+            ConfigurationError: a source of states is missing or invalid (`state_sources`).
         """
         self.parameters = parameters
         self.asked_ns = 0
@@ -60,11 +59,11 @@ class ServerCore:
 
     @property
     def world(self) -> World:
-        """The bodies and surfaces that are configured at present."""
+        """The current bodies and surfaces."""
         return self.parameters.world
 
     def change(self, parameters: ServerParameters) -> None:
-        """Answer with another configuration from now on, which `check_change` allows."""
+        """Continue with another configuration, which `check_change` allows."""
         before, self.parameters = self.parameters, parameters
         self._limit_states()
         changed = bodies_read_otherwise(before, parameters)
@@ -80,11 +79,9 @@ class ServerCore:
         )
 
     def expect(self, publishers: Mapping[str, int] | None = None) -> None:
-        """Note, for whoever asks before the first state, where states are expected.
+        """Set the topics and the numbers of publishers for the error before the first state.
 
-        Args:
-            publishers: how many publish on each topic. None means that nobody can know, since a log is
-                replayed.
+        The numbers are None in the replay of a log, where they are unknown.
         """
         for body in self.parameters.sources:
             names = {topic.full_name for source in body.sources for topic in source.topics}
@@ -92,7 +89,7 @@ class ServerCore:
             self.states.expect(body.body_name, expected(body, count))
 
     def question_of(self, service: Service, request: object) -> Question[Answer]:
-        """Return the question that a request asks.
+        """Return the question of a request.
 
         Raises:
             ContactDynamicsError: the request is rejected.
