@@ -170,8 +170,7 @@ class MayMove(Protocol):
 def check_at_rest(argument: str, value: MayMove, call: str) -> None:
     """Raise `NotSupportedError` where surfaces move, in a call that takes only surfaces at rest."""
     if value.surfaces_move:
-        message = f"{argument} must have surfaces at rest in {call}, got surfaces that move"
-        raise NotSupportedError(message)
+        raise NotSupportedError(f"{argument} must have surfaces at rest in {call}, got surfaces that move")
 
 
 def check_motion(field: str, value: ArrayLike | None, n: int | None = None) -> FloatArray | None:

@@ -591,12 +591,11 @@ class World(Record):
         for each in self.surfaces:
             if not (isinstance(each, Surface) and _alike(first, each)):
                 found = [_motion_in_words(one) for one in dict.fromkeys((first, each))]
-                message = (
+                raise NotSupportedError(
                     f"world must have surfaces at rest in {call}, or surfaces that all move with the same "
                     f"v_WS_W and a_WS_W and do not turn, got {' and '.join(found)}; next_landing and "
                     "contact_modes accept other motions"
                 )
-                raise NotSupportedError(message)
         at_rest = [replace(each, v_WS_W=_AT_REST, a_WS_W=_AT_REST) for each in planes]
         frame = SurfaceFrame(velocity_W=first.v_WS_W, acceleration_W=first.a_WS_W)
         return replace(self, surfaces=tuple(at_rest), gravity_W=self.gravity_W - first.a_WS_W), frame
@@ -608,5 +607,4 @@ class World(Record):
             if body.name == name:
                 return body
         known = ", ".join(repr(body.name) for body in self.bodies) or "none"
-        message = f"body_name must be one of the known bodies ({known}), got {name!r}"
-        raise UnknownBodyError(message)
+        raise UnknownBodyError(f"body_name must be one of the known bodies ({known}), got {name!r}")

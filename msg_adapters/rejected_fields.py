@@ -93,8 +93,7 @@ def check_unread(
                 known = _either([condition.words(request) for condition in conditions])
                 allowed = f"left out unless {known}"
                 shown = found if isinstance(found, str) or not hasattr(found, "__iter__") else list(found)
-                hint = conditions[0].remedy(request)
-                raise InvalidFieldError(path + leaf.path, shown, allowed, hint)
+                raise InvalidFieldError(path + leaf.path, shown, allowed, conditions[0].remedy(request))
 
 
 _Row: TypeAlias = tuple[

@@ -107,11 +107,10 @@ class TransformTree:
             for other in (*_before(to_frame, shared), *_before(to_other, shared)):
                 link = self._link(other)
                 if link is not None and link.stamp_ns not in {None, stamp_ns}:
-                    message = (
+                    raise FrameMismatchError(
                         f"{field} must be a frame with a static transform, or with one at {stamp_ns} ns, got "
                         f"{frame!r}, whose frame {other!r} was last published at {link.stamp_ns} ns"
                     )
-                    raise FrameMismatchError(message)
             return to_other[shared].inverse().of(inner)
         message = f"{field} must be {in_frame!r}, or a frame with a known transform to it, got {frame!r}"
         raise FrameMismatchError(message)
@@ -154,5 +153,4 @@ def _quaternion(q: FloatArray) -> Quaternion:
 def check_frame(field: str, found: str, expected: str) -> None:
     """Raise `FrameMismatchError` if a message's frame is not the expected one."""
     if found != expected:
-        message = f"{field} must be {expected!r}, got {found!r}"
-        raise FrameMismatchError(message)
+        raise FrameMismatchError(f"{field} must be {expected!r}, got {found!r}")

@@ -99,8 +99,7 @@ class Questioner(Node):
             while not client.wait_for_service(_POLL_S):
                 check()
                 if time.monotonic() > deadline:
-                    message = f"the server does not serve {client.srv_name}"
-                    raise TimeoutError(message)
+                    raise TimeoutError(f"the server does not serve {client.srv_name}")
         self.create_subscription(Odometry, topic_of(self._toss), self._receive, QOS)
 
     def watch(self, playing: Callable[[], bool]) -> None:
@@ -191,8 +190,7 @@ class Questioner(Node):
         future, patience = client.call_async(request), Patience(ANSWER_S)
         while not future.done():
             if patience.is_over:
-                message = f"no answer from {client.srv_name} within {ANSWER_S:g} s"
-                raise TimeoutError(message)
+                raise TimeoutError(f"no answer from {client.srv_name} within {ANSWER_S:g} s")
             self._executor.spin_once(timeout_sec=0.1)
             patience.look()
         return Asked(time=now, response=future.result(), round_trip=time.monotonic() - start)

@@ -47,13 +47,11 @@ def _numbers(name: str, source: Any, link: Any) -> dict[str, Any]:
     from contact_dynamics.shapes.files import read_link  # loads SciPy
 
     if not isinstance(source, str) or not isinstance(link, str):
-        message = f"{name} and link must be texts, got {source!r} and {link!r}"
-        raise ConfigurationError(message)
+        raise ConfigurationError(f"{name} and link must be texts, got {source!r} and {link!r}")
     try:
         found = read_link(source, link or None)
     except ContactDynamicsError as error:
-        message = f"{name}: {error}"
-        raise ConfigurationError(message) from None
+        raise ConfigurationError(f"{name}: {error}") from None
     I_B = found.mass.I_B
     return {
         "mass": float(found.mass.mass),

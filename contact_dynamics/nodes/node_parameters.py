@@ -84,8 +84,7 @@ class NodeParameters(ParameterSource):
         try:
             resolved: str = self._node.resolve_topic_name(topic)
         except RuntimeError as error:
-            message = f"{name} must be a topic's name ({error}), got {topic!r}"
-            raise ConfigurationError(message) from None
+            raise ConfigurationError(f"{name} must be a topic's name ({error}), got {topic!r}") from None
         return resolved
 
     def _descriptor(

@@ -103,8 +103,7 @@ def read_visualizer_parameters(source: ParameterSource) -> VisualizerParameters:
         message = f"only one of spawn, serve and connect must be set, got {' and '.join(chosen)}"
         raise ConfigurationError(message)
     if not chosen and not given["rrd_path"]:
-        message = "one of rrd_path, spawn, serve and connect is required"
-        raise ConfigurationError(message)
+        raise ConfigurationError("one of rrd_path, spawn, serve and connect is required")
     try:
         sinks = Sinks(
             rrd_path=given["rrd_path"],

@@ -57,18 +57,15 @@ def read_sections(path: Path) -> tuple[Section, ...]:
     try:
         text = path.read_text(encoding="utf-8")
     except (OSError, UnicodeDecodeError) as error:
-        message = f"{path}: cannot be read: {error}"
-        raise ConfigurationError(message) from None
+        raise ConfigurationError(f"{path}: cannot be read: {error}") from None
     try:
         loader = getattr(yaml, "CSafeLoader", yaml.SafeLoader)(text)  # ten times as fast
         root = loader.get_single_node()
         if _items(root):
             return tuple(_sections(path, root, "", construct=loader.construct_document))
     except yaml.YAMLError as error:
-        message = f"{path}: no YAML: {error}"
-        raise ConfigurationError(message) from None
-    message = f"{path} must have parameters of {ANY_NODE} or of a node by its name, got none"
-    raise ConfigurationError(message)
+        raise ConfigurationError(f"{path}: no YAML: {error}") from None
+    raise ConfigurationError(f"{path} must have parameters of {ANY_NODE} or of a node by its name, got none")
 
 
 def _sections(
@@ -87,8 +84,7 @@ def _sections(
         elif _items(inner) and not parameters:
             yield from _sections(path, inner, name, construct=construct)
         else:
-            message = f"{path}: {name.lstrip('/')} must have {_VALUES} (names with values)"
-            raise ConfigurationError(message)
+            raise ConfigurationError(f"{path}: {name.lstrip('/')} must have {_VALUES} (names with values)")
 
 
 def _items(node: Any) -> list[tuple[Any, Any]]:
@@ -126,16 +122,14 @@ def check_sections(path: Path, sections: Sequence[Section], full_name: str) -> s
     """
     twice = [each for section in sections if section.is_for(full_name) for each in section.repeated]
     if twice:
-        message = f"{path}: {'; '.join(twice)}"
-        raise ConfigurationError(message)
+        raise ConfigurationError(f"{path}: {'; '.join(twice)}")
     others = [section.node for section in sections if not section.is_for(full_name)]
     if len(others) == len(sections):
         nearest = _nearest(others, full_name)
-        message = (
+        raise ConfigurationError(
             f"{path} must have parameters of {ANY_NODE} or {full_name}, got only those of "
             f"{' and of '.join(others)}, which do not apply to this node; {nearest} is the nearest name"
         )
-        raise ConfigurationError(message)
     misspelled = [name for name in others if _is_misspelled(name, full_name)]
     if not misspelled:
         return ""
@@ -237,8 +231,7 @@ def values_of(config: Path | None, settings: Sequence[str]) -> dict[str, Any]:
     for text in settings:
         name, separator, value = text.partition(":=")
         if not name or not separator:
-            message = f"--set must be NAME:=VALUE, got {text!r}"
-            raise ConfigurationError(message)
+            raise ConfigurationError(f"--set must be NAME:=VALUE, got {text!r}")
         values[name] = _value_of(value)
     return values
 
@@ -261,8 +254,7 @@ def _topics(text: str) -> dict[str, str]:
     body, _, names = text.partition("=")
     found = names.split(",")
     if not body or not all(found) or len(found) > 2:
-        message = f"--topics must be BODY=ODOMETRY or BODY=POSE,TWIST, got {text!r}"
-        raise ConfigurationError(message)
+        raise ConfigurationError(f"--topics must be BODY=ODOMETRY or BODY=POSE,TWIST, got {text!r}")
     odometry, pose, twist = ("", *found) if len(found) == 2 else (found[0], "", "")
     key = f"body.{body}"
     return {f"{key}.odometry_topic": odometry, f"{key}.pose_topic": pose, f"{key}.twist_topic": twist}

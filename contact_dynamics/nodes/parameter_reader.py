@@ -95,14 +95,12 @@ class ParameterSource:
         """
         found = self.values.get(name)
         if found is None and default is float:
-            message = f"{self._before}{name} is required ({description})"
-            raise ConfigurationError(message)
+            raise ConfigurationError(f"{self._before}{name} is required ({description})")
         value, allowed = _as_default(default if found is None else found, default)
         if not allowed and bounds is not None and not bounds[0] <= value <= bounds[1]:
             allowed = f"in [{bounds[0]:g}, {bounds[1]:g}]"
         if allowed:
-            message = f"{self._before}{name} must be {allowed} ({description}), got {found!r}"
-            raise ConfigurationError(message)
+            raise ConfigurationError(f"{self._before}{name} must be {allowed} ({description}), got {found!r}")
         self.read[name] = DeclaredParameter(name, value, description, bounds)
         return value
 
@@ -146,8 +144,7 @@ class ParameterSource:
             return []
         found = [_checked_name(f"{name}[{i}]", each) for i, each in enumerate(given)]
         if len(set(found)) < len(found):
-            message = f"{name} must be different names, got {found}"
-            raise ConfigurationError(message)
+            raise ConfigurationError(f"{name} must be different names, got {found}")
         return found
 
     def topic(self, name: str, description: str) -> ConfiguredTopic | None:
@@ -158,8 +155,7 @@ class ParameterSource:
         found = self._configured(name, topic)
         other = self._single_topics.setdefault(found.full_name, name)
         if other != name:
-            message = f"{name} must be another topic than that of {other}, got {topic!r}"
-            raise ConfigurationError(message)
+            raise ConfigurationError(f"{name} must be another topic than that of {other}, got {topic!r}")
         return found
 
     def topics_of(self, name: str, description: str) -> tuple[ConfiguredTopic, ...]:
@@ -218,8 +214,7 @@ class ParameterSource:
         unknown = sorted(name for name in given if name not in known)
         if unknown:
             told = "\n".join(self._unknown(name, known) for name in unknown)
-            message = f"{self._before}{told}"
-            raise ConfigurationError(message)
+            raise ConfigurationError(f"{self._before}{told}")
 
     def _unknown(self, name: str, known: Collection[str]) -> str:
         kind, _, rest = name.partition(".")

@@ -219,8 +219,7 @@ def _read_log_before_answer(source: ParameterSource, *, is_logged: bool) -> bool
         description="Whether a response is sent only once it is on the disk, with its request and states.",
     )
     if is_before and not is_logged:
-        message = "log_before_answer must be false where log is false, got true"
-        raise ConfigurationError(message)
+        raise ConfigurationError("log_before_answer must be false where log is false, got true")
     return is_before
 
 
@@ -231,8 +230,7 @@ def _read_log_limits(source: ParameterSource) -> LogLimits:
         "log_compression", Compression.ZSTD.value, f"Compression of the log: {allowed}."
     )
     if compression not in names:
-        message = f"log_compression must be one of {allowed}, got {compression!r}"
-        raise ConfigurationError(message)
+        raise ConfigurationError(f"log_compression must be one of {allowed}, got {compression!r}")
     least = LEAST_FILE_BYTES / MEGABYTE
     file_size = source.zero_or(
         "log_file_size",
@@ -256,8 +254,7 @@ def _read_log_limits(source: ParameterSource) -> LogLimits:
         unit="MB",
     )
     if size_limit is not None and file_size is None:
-        message = f"log_size_limit must be 0 where log_file_size is 0, got {size_limit:g} MB"
-        raise ConfigurationError(message)
+        raise ConfigurationError(f"log_size_limit must be 0 where log_file_size is 0, got {size_limit:g} MB")
     return LogLimits(
         compression=Compression(compression),
         file_bytes=_bytes(file_size),
@@ -298,11 +295,10 @@ def check_change(before: ServerParameters, after: ServerParameters, others: Iter
         f"the topics of body.{name}" for name in sorted({*then, *now}) if then.get(name) != now.get(name)
     ]
     if changed:
-        message = (
+        raise ConfigurationError(
             f"{', '.join(changed)} must be changed after the lifecycle transition 'cleanup' and before "
             "'configure', got a change while the node is configured"
         )
-        raise ConfigurationError(message)
 
 
 def bodies_read_otherwise(before: ServerParameters, after: ServerParameters) -> tuple[str, ...]:

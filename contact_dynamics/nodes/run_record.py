@@ -63,8 +63,7 @@ class LoggedParameters(ParameterSource):
             self._logged = dict(json.loads(run.get(PARAMETERS, "{}")))
             self._logged_topics = dict(json.loads(run.get(TOPICS, "{}")))
         except (ValueError, TypeError) as error:
-            message = f"the log's record of its run cannot be read: {error}"
-            raise ConfigurationError(message) from None
+            raise ConfigurationError(f"the log's record of its run cannot be read: {error}") from None
         # Another version of the server may have had other parameters.
         super().__init__({**self._logged, **self._instead}, also_known=[*self._logged, *PARAMETERS_OF_OTHERS])
 

@@ -119,16 +119,14 @@ def adapter_of(name: str, *, parameter: str) -> StateAdapter:
     brought = {point.name: point for point in entry_points(group=ENTRY_POINTS)}
     if name not in brought:
         known = ", ".join([*ADAPTERS, *sorted(brought)])
-        message = f"{parameter} must be one of {known}, got {name!r}"
-        raise ConfigurationError(message)
+        raise ConfigurationError(f"{parameter} must be one of {known}, got {name!r}")
     try:
         adapter = brought[name].load()
     except Exception as error:  # noqa: BLE001  whatever a foreign module raises when it is imported
-        message = (
+        raise ConfigurationError(
             f"{parameter} must name an adapter, got {name!r}, which cannot be imported: "
             f"{type(error).__name__}: {error}"
-        )
-        raise ConfigurationError(message) from None
+        ) from None
     if not isinstance(adapter, StateAdapter):
         message = f"{parameter} must be a StateAdapter, got {name!r}, which is a {type(adapter).__name__}"
         raise ConfigurationError(message)
@@ -165,11 +163,10 @@ def state_sources(parameters: ServerParameters, *, static: TransformTree) -> tup
                 _add(found, source, topic.parameter)
                 other = by_frame.setdefault((topic.full_name, body.frame), body.body_name)
                 if other != body.body_name:
-                    message = (
+                    raise ConfigurationError(
                         f"body.{body.body_name}.frame must be another frame than that of body.{other}, which "
                         f"shares the topic {topic.name!r}, got {body.frame!r}"
                     )
-                    raise ConfigurationError(message)
     return tuple(found.values())
 
 
@@ -191,8 +188,7 @@ def _of_body(
     if len(configured.topics) != len(adapter.type_names):
         found = [topic.name for topic in configured.topics]
         allowed = f"{len(adapter.type_names)}, of {' and '.join(adapter.type_names)}"
-        message = f"{parameter}_topics must be {allowed}, got {found}"
-        raise ConfigurationError(message)
+        raise ConfigurationError(f"{parameter}_topics must be {allowed}, got {found}")
     return tuple(
         StateSource(
             topic=topic.name,
@@ -229,16 +225,14 @@ def _add(found: dict[str, StateSource], source: StateSource, parameter: str) -> 
         found[source.full_name] = source
         return
     if (known.type_name, known.is_latched) != (source.type_name, source.is_latched):
-        message = (
+        raise ConfigurationError(
             f"{parameter} must be another topic than that of {known.type_name}, got {source.topic!r} for "
             f"{source.type_name}"
         )
-        raise ConfigurationError(message)
     if known.is_of_one_body or source.is_of_one_body:
-        message = (
+        raise ConfigurationError(
             f"{parameter} must be another topic than that of the states of "
             f"body.{known.readers[0].body_name}, since each message there is about one body, "
             f"got {source.topic!r}"
         )
-        raise ConfigurationError(message)
     found[source.full_name] = replace(known, readers=(*known.readers, *source.readers))

@@ -119,8 +119,7 @@ def _read_link(source: ParameterSource, key: str) -> None:
     }
     for leaf, text in texts.items():
         if given := source.value(f"{key}.{leaf}", "", text):
-            message = f"{key}.{leaf} must be given when the server starts, got {given!r}"
-            raise ConfigurationError(message)
+            raise ConfigurationError(f"{key}.{leaf} must be given when the server starts, got {given!r}")
 
 
 def _read_deviations(source: ParameterSource, key: str) -> tuple[float, ...]:
@@ -152,14 +151,12 @@ def _read_sources(source: ParameterSource, key: str) -> tuple[ConfiguredSource, 
         "Topic of the body's geometry_msgs/TwistStamped. If empty, velocities are estimated from poses.",
     )
     if twist is not None and pose is None:
-        message = f"{key}.twist_topic must be none without a pose_topic, got {twist.name!r}"
-        raise ConfigurationError(message)
+        raise ConfigurationError(f"{key}.twist_topic must be none without a pose_topic, got {twist.name!r}")
     name = source.value(f"{key}.source", "", "Name of another source of states. Not used if empty.")
     topics = source.topics_of(f"{key}.source_topics", "Topics of this source.")
     if bool(name) != bool(topics):
         found = f"{name!r} and {[topic.name for topic in topics]}"
-        message = f"{key}.source and {key}.source_topics must be both or none, got {found}"
-        raise ConfigurationError(message)
+        raise ConfigurationError(f"{key}.source and {key}.source_topics must be both or none, got {found}")
     sources = []
     if odometry is not None:
         sources.append(ConfiguredSource(adapter="odometry", topics=(odometry,)))
@@ -474,8 +471,7 @@ class ShapeParameters:
             check_place(name, corners)
             return corners
         if len(values) != len(checks):
-            allowed = f"{len(checks)} (or [0.0]: none)"
-            raise InvalidFieldError(name, f"{len(values)} numbers", allowed)
+            raise InvalidFieldError(name, f"{len(values)} numbers", f"{len(checks)} (or [0.0]: none)")
         numbers = [checks[i](f"{name}[{i}]", x) for i, x in enumerate(values)]
         for i, x in enumerate(numbers):
             if x > 0.0 and not 1.0 / MAX_IN_CONTACT <= x <= MAX_IN_CONTACT:

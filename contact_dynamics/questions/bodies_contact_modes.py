@@ -155,8 +155,7 @@ def answer(question: BodiesContactModeQuestion, context: Context | None = None) 
     known = Context() if context is None else context
     contacts = question.contacts
     if len(contacts) == 0:
-        message = "contacts must be at least one, got none"
-        raise NoContactError(message)
+        raise NoContactError("contacts must be at least one, got none")
     if len(contacts) > MAX_PLANAR_CONTACTS:
         raise TooLargeError("contacts", f"{len(contacts)} contacts", f"at most {MAX_PLANAR_CONTACTS}")
     check_contacts(contacts)

@@ -104,23 +104,21 @@ def with_carried(
         instant_ns = earlier.stamp_ns if stamp_ns is None else stamp_ns
         ahead = seconds_between(earlier.stamp_ns, instant_ns)
         if later is None and ahead > max_extrapolation:
-            message = (
+            raise StaleStateError(
                 f"surface {each.surface.name!r}: the latest state of {name!r}, which carries it, must be at "
                 f"most {max_extrapolation:g} s before the question's state (max_extrapolation), "
                 f"got {ahead:.3f} s"
             )
-            raise StaleStateError(message)
         known = [state_of(state) for state in states.window(name, earlier, each.acceleration_window)]
         if len(known) < _LEAST_STATES and each.acceleration_window > 0.0:  # slowly published
             kept = states.window(name, earlier, _SLOWEST_S)[-_LEAST_STATES:]
             known = [state_of(state) for state in kept]
         known += [] if later is None else [state_of(later)]
         if len(known) < _LEAST_STATES and each.acceleration_window > 0.0:
-            message = (
+            raise NoStateError(
                 f"surface {each.surface.name!r}: at least {_LEAST_STATES} states of {name!r} are required to "
                 f"estimate its acceleration, got {len(known)} (with an acceleration_window of 0, it is zero)"
             )
-            raise NoStateError(message)
         planes.append(_plane_at(each, world.body(name), known, instant_ns))
         if later is None and ahead > 0.0:
             age = f"{1e3 * ahead:.3g} ms older than the question's state"

@@ -85,11 +85,10 @@ class Context(Record):
             self.world.body(carried.body_name)
         for surface in self.world.surfaces if self.notes is None else ():
             if isinstance(surface, Surface) and not surface.is_steady:
-                message = (
+                raise NotSupportedError(
                     "world must have surfaces that are at rest or move steadily in their own plane in "
                     f"questions, such as belts and turntables (others can be `carried`), got {surface.name!r}"
                 )
-                raise NotSupportedError(message)
 
 
 class Problem(NamedInt):

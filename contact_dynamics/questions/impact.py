@@ -201,11 +201,10 @@ def _in_time(question: ImpactQuestion, law: InTime, strike: _Strike, context: Co
         hold_step=law.hold_step,
     )
     if not sequence.strikes and sequence.end == SequenceEnd.STAYS:
-        message = (
+        raise NoContactError(
             "contacts: at least one must approach, got one that stays closed (compute its contact mode, or "
             "set hold_step to continue)"
         )
-        raise NoContactError(message)
     if not sequence.strikes:
         allowed = f"one that approaches or comes back within the strike_window of {law.strike_window:g} s"
         if question.contacts is not None:
@@ -405,24 +404,21 @@ def _check_supported(question: ImpactQuestion, *, contact_count: int) -> None:
     in_time = isinstance(question.several_contacts_law, InTime)
     is_planar, has_other = question.problem is Problem.PLANAR, question.other is not None
     if has_other and (question.include_orders or is_planar or in_time):
-        message = (
+        raise NotSupportedError(
             "with a second body (other), problem must be SPATIAL or AUTOMATIC, several_contacts_law "
             "SEQUENTIAL or SIMULTANEOUS, and include_orders false"
         )
-        raise NotSupportedError(message)
     if in_time and is_planar:
-        message = "problem must be SPATIAL or AUTOMATIC for impacts over time, got PLANAR"
-        raise NotSupportedError(message)
+        raise NotSupportedError("problem must be SPATIAL or AUTOMATIC for impacts over time, got PLANAR")
     if in_time and question.include_orders:
         message = "include_orders must be false for impacts over time, got true (their order is that of time)"
         raise NotSupportedError(message)
     one_contact = contact_count == 1 and not is_planar and not in_time
     if question.include_covariance and (has_other or not one_contact):
-        message = (
+        raise NotSupportedError(
             "include_covariance must be false unless a spatial problem has one contact with the world, and "
             f"for impacts over time, got true for {contact_count} contacts"
         )
-        raise NotSupportedError(message)
 
 
 def _landing(

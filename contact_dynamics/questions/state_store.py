@@ -216,8 +216,7 @@ class StateStore:
         track = self._tracks.get(body_name, _Track())
         state = track.last(len(track.stamps))
         if state is None:
-            message = f"no state of {body_name!r}: {self.arrivals(body_name).why_none(now_ns)}"
-            raise NoStateError(message)
+            raise NoStateError(f"no state of {body_name!r}: {self.arrivals(body_name).why_none(now_ns)}")
         return state if now_ns is None else self._fresh(body_name, state, now_ns)
 
     @checks_types
@@ -247,8 +246,7 @@ class StateStore:
             oldest = track.first(0)
             none = self.arrivals(body_name).why_none(now_ns)
             kept = none if oldest is None else f"the oldest stored state is at {oldest.stamp_ns} ns"
-            message = f"no state of {body_name!r} at {stamp_ns} ns: {kept}"
-            raise NoStateError(message)
+            raise NoStateError(f"no state of {body_name!r} at {stamp_ns} ns: {kept}")
         if earlier.stamp_ns == stamp_ns:
             return earlier, None
         later = track.first(bisect_right(track.stamps, stamp_ns))
@@ -256,11 +254,10 @@ class StateStore:
             return earlier if now_ns is None else self._fresh(body_name, earlier, now_ns), None
         gap_ns = later.stamp_ns - earlier.stamp_ns
         if gap_ns > self._timeout_ns:
-            message = (
+            raise StaleStateError(
                 f"state of {body_name!r} at {stamp_ns} ns: the states before and after it must be at most "
                 f"{to_seconds(self._timeout_ns):g} s apart (state_timeout), got {to_seconds(gap_ns):.3f} s"
             )
-            raise StaleStateError(message)
         return earlier, later
 
     def pairs(

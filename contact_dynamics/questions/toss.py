@@ -231,8 +231,7 @@ def _path(went: Toss, rate: float) -> TossPath:
     """Return a toss as it is told, with the motion at a rate, Hz."""
     count = went.seconds * rate
     if count > MAX_TIMES - 1:
-        found = f"{count:.9g} samples until {went.seconds:.3g} s"
-        raise TooLargeError("rate", found, f"at most {MAX_TIMES}")
+        raise TooLargeError("rate", f"{count:.9g} samples until {went.seconds:.3g} s", f"at most {MAX_TIMES}")
     times = np.append(np.arange(math.ceil(count - 1e-9)) / rate, went.seconds)  # without a last one twice
     shared = {each.name: getattr(went, each.name) for each in fields(TossOutcome)}
     return TossPath(trajectory=went.at(times), **shared)

@@ -46,8 +46,7 @@ def contacts_of(
     """
     if named is not None:
         if len(named) == 0:
-            message = "contacts must be at least one, got none"
-            raise NoContactError(message)
+            raise NoContactError("contacts must be at least one, got none")
         return named
     body = subject.body
     check_has_shape(body)
@@ -188,7 +187,6 @@ def flush_rim(body: Body, contacts: ContactSet) -> tuple[str, ...]:
 def check_has_shape(body: Body) -> None:
     """Raise `NoShapeError` for a body without a shape that could touch anything."""
     if body.shape.is_empty:
-        message = (
+        raise NoShapeError(
             f"contacts must be given explicitly, since body {body.name!r} has no shape to find them from"
         )
-        raise NoShapeError(message)

@@ -142,11 +142,10 @@ class Workers:
         most = len(self._workers) + self.limits.max_waiting
         with self._lock:
             if self._open >= most:
-                message = (
+                raise BusyError(
                     f"{most} questions that take long are being answered or wait, which is the most (workers "
                     "and max_waiting)"
                 )
-                raise BusyError(message)
             self._open += 1
         seconds = self.limits.deadline
         job = _Job(

@@ -320,8 +320,7 @@ def _length(field: Field, length: struct.Struct, data: bytes, at: int) -> tuple[
         (number,) = length.unpack_from(data, at)
         at += length.size
     if number > len(data) - at:  # each takes at least one byte
-        message = f"{field.name} claims {number} elements, {len(data) - at} bytes are left"
-        raise ValueError(message)
+        raise ValueError(f"{field.name} claims {number} elements, {len(data) - at} bytes are left")
     return number, at
 
 
@@ -341,8 +340,7 @@ def _string(order: str) -> Read:
 def _bytes(data: bytes, at: int, count: int) -> bytes:
     raw = data[at : at + count]
     if len(raw) < count:
-        message = f"{count} bytes are due at {at}, {len(raw)} are left"
-        raise ValueError(message)
+        raise ValueError(f"{count} bytes are due at {at}, {len(raw)} are left")
     return raw
 
 

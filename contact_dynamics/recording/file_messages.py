@@ -149,7 +149,6 @@ def _pieces(compression: bytes, packed: BinaryIO) -> Iterator[bytes]:
 
         stream = lz4.frame.LZ4FrameFile(packed)
     else:
-        message = f"compression must be zstd, lz4 or none, got {compression!r}"
-        raise ValueError(message)
+        raise ValueError(f"compression must be zstd, lz4 or none, got {compression!r}")
     while piece := stream.read(_PIECE):
         yield piece

@@ -62,28 +62,24 @@ class McapFile:
         """
         head = self.bytes_at(position, HEAD.size)
         if len(head) < HEAD.size:
-            message = "the file ends here, before its end"
-            raise DamagedError(message)
+            raise DamagedError("the file ends here, before its end")
         kind, length = HEAD.unpack(head)
         begin = position + HEAD.size
         if length > self.size - begin:
-            message = f"a record claims {length} bytes, {self.size - begin} are left"
-            raise DamagedError(message)
+            raise DamagedError(f"a record claims {length} bytes, {self.size - begin} are left")
         return kind, begin, begin + length
 
     def content(self, begin: int, end: int) -> bytes:
         """Return the content of a record of a short kind, or raise `DamagedError` if it is too long."""
         if end - begin > _LONGEST_CONTENT:
-            message = f"a record claims {end - begin} bytes"
-            raise DamagedError(message)
+            raise DamagedError(f"a record claims {end - begin} bytes")
         return self.bytes_at(begin, end - begin)
 
 
 def demand(condition: bool, what: str) -> None:  # noqa: FBT001  as an assertion
     """Raise `DamagedError` with the text ``what`` unless the condition holds."""
     if not condition:
-        message = f"{what} is wrong"
-        raise DamagedError(message)
+        raise DamagedError(f"{what} is wrong")
 
 
 def parsed(record_type: Any, content: bytes) -> Any:
@@ -92,8 +88,7 @@ def parsed(record_type: Any, content: bytes) -> Any:
     try:
         record = record_type.read(stream)
     except Exception as error:  # on damaged bytes the library raises nearly any exception
-        message = f"a {record_type.__name__} record is wrong: {error!r}"
-        raise DamagedError(message) from error
+        raise DamagedError(f"a {record_type.__name__} record is wrong: {error!r}") from error
     demand(stream.count == len(content), f"the length of a {record_type.__name__} record")
     return record
 

@@ -211,8 +211,7 @@ class McapWalk:
         }
         found = file.bytes_at(0, len(MAGIC))
         if len(found) < len(MAGIC) or sum(a != b for a, b in zip(found, MAGIC, strict=True)) > 1:
-            message = f"{file.path} is not an MCAP file"
-            raise NotALogError(message)
+            raise NotALogError(f"{file.path} is not an MCAP file")
         if found != MAGIC:
             self._lose(0, len(MAGIC), "its first bytes are not those of an MCAP file", messages=0)
 
@@ -308,8 +307,7 @@ class McapWalk:
         if kind == Opcode.MESSAGE and not self._chunked:
             self._unchecked = True
             return [_message(self._file.bytes_at(begin, end - begin))]
-        message = f"no record begins here: found kind {kind:#04x}"
-        raise DamagedError(message)
+        raise DamagedError(f"no record begins here: found kind {kind:#04x}")
 
     def _check_header(self, begin: int, end: int) -> None:
         for _ in range(2):  # profile and library
@@ -328,8 +326,7 @@ class McapWalk:
         try:
             data = uncompressed(name, packed, size)
         except Exception as error:  # on damaged bytes the libraries raise nearly any exception
-            message = f"a chunk cannot be unpacked: {error}"
-            raise DamagedError(message) from error
+            raise DamagedError(f"a chunk cannot be unpacked: {error}") from error
         demand(len(data) == size, "the size of a chunk")
         demand(checksum in (0, zlib.crc32(data)), "the checksum of a chunk")
         records = _chunk_records(data)

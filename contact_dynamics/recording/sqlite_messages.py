@@ -48,8 +48,7 @@ class SqliteMessages:
         """
         with self._path.open("rb") as stream:
             if stream.read(len(_HEADER)) != _HEADER:
-                message = f"{self._path} is not an SQLite file"
-                raise NotALogError(message)
+                raise NotALogError(f"{self._path} is not an SQLite file")
         self._database = self._opened()
         return self
 
@@ -109,8 +108,7 @@ class SqliteMessages:
             database.close()
             message = f"{self._path}: no bag of rosbag2: its tables are {', '.join(sorted(found)) or 'none'}"
             raise NotALogError(message)
-        message = f"{self._path}: {error}"
-        raise NotALogError(message) from None
+        raise NotALogError(f"{self._path}: {error}") from None
 
     def _definitions(self) -> dict[str, str]:
         """Return the text of each type. Bags from before ROS 2 Iron have none."""

@@ -91,8 +91,7 @@ def recover(
     try:
         folder.mkdir(parents=True)
     except FileExistsError as error:
-        message = f"{folder} exists; a log is never overwritten"
-        raise LogExistsError(message) from error
+        raise LogExistsError(f"{folder} exists; a log is never overwritten") from error
     try:
         return _rewritten(paths, folder, on_progress)
     except BaseException:

@@ -207,8 +207,7 @@ def _events(path: Path, given: argparse.Namespace) -> Events:
     elif run := BagReader(path).run():
         source = LoggedParameters(run)
     else:
-        message = f"{path}: the log does not contain a configuration; specify one with --config"
-        raise NotALogError(message)
+        raise NotALogError(f"{path}: the log does not contain a configuration; specify one with --config")
     return AskedEvents(
         path,
         source,

@@ -140,8 +140,7 @@ def _parquet(path: Path) -> Iterator[Write]:
         import pyarrow as pa  # large, hence an extra
         import pyarrow.parquet as pq
     except ModuleNotFoundError:
-        message = "a .parquet file requires pyarrow: pip install '.[evaluate]'"
-        raise NotSupportedError(message) from None
+        raise NotSupportedError("a .parquet file requires pyarrow: pip install '.[evaluate]'") from None
     types = {str: pa.string(), int: pa.int64(), float: pa.float64()}
     schema = pa.schema([(name, types[kind]) for name, kind in COLUMNS.items()], metadata=_FOR_PANDAS)
     waiting: list[dict[str, Cell]] = []

@@ -121,8 +121,7 @@ class OpenRecording:
         self._tended = time.monotonic()
         self.description = ", ".join(self._open()) or "nowhere"
         if self._problem and not sinks.rrd_path:
-            message = f"nowhere to draw to: {self._problem}"
-            raise NowhereToDrawError(message)
+            raise NowhereToDrawError(f"nowhere to draw to: {self._problem}")
         if self._problem:
             on_problem(self._problem)
 
