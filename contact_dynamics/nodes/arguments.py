@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""These are the arguments that every node of this package takes on the command line, besides ROS's own.
+"""The command-line arguments of the nodes besides ROS's own.
 
 This file imports no ROS, so that `--help` works without it.
 """
@@ -60,9 +60,7 @@ def live_monitor_parser() -> argparse.ArgumentParser:
 def ros_arguments(parser: argparse.ArgumentParser, arguments: list[str]) -> list[str]:
     """Return the arguments for `rclpy.init`. `--help` and mistakes end the process here.
 
-    Args:
-        parser: the parser of the verb, from this file.
-        arguments: all that follows the verb. What comes after `--ros-args` belongs to ROS.
+    The ``arguments`` are all after the verb; ROS reads those after `--ros-args`.
     """
     split = _end_of_ours(arguments)
     mine = _parsed(parser, arguments[:split])
@@ -76,12 +74,12 @@ def ros_arguments(parser: argparse.ArgumentParser, arguments: list[str]) -> list
 
 
 def check_arguments(parser: argparse.ArgumentParser, arguments: list[str]) -> None:
-    """Let `--help` and mistakes end the process. ROS checks what follows `--ros-args`."""
+    """Parse the arguments before `--ros-args`. `--help` and mistakes end the process."""
     _parsed(parser, arguments[: _end_of_ours(arguments)])
 
 
 def _parsed(parser: argparse.ArgumentParser, arguments: list[str]) -> argparse.Namespace:
-    """Return the arguments. An error ends the process, with a hint where an option should be a parameter."""
+    """Return the arguments. A mistake ends the process, with a hint if the option is a parameter."""
     given, unknown = parser.parse_known_args(arguments)
     if unknown:
         name, _, value = unknown[0].partition("=")
@@ -109,7 +107,7 @@ def _listed(parameters: Iterable[DeclaredParameter]) -> str:
 
 
 def _default(value: Any) -> str:
-    """Return the default of a parameter in words, unless its description says what that means."""
+    """Return a text with the default of a parameter, unless its description explains the default."""
     if value in (None, "", 0, [""], [0.0]):
         return ""
     return f" Default: {json.dumps(value)}."

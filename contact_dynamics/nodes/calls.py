@@ -50,7 +50,7 @@ class Call:
     is_logged: bool = False  # whether the log has the response already, before its event
 
     def finish(self) -> None:
-        """Note that the response can be sent, and how long it took."""
+        """Set that the response can be sent, and the duration of its computation."""
         self.is_done = True
         self.response.computation_time = time.perf_counter() - self.begun
 
@@ -78,16 +78,14 @@ class CallTimes:
 
     @staticmethod
     def end(call: Call) -> None:
-        """Note that the response to a call is sent now."""
+        """Set the time of sending of a response to the present."""
         call.sent_ns = time.time_ns()
 
     def of_event(self, event: bytes, *, received_ns: int) -> EventTimes:
-        """Return the time of what an event reports.
+        """Return the times of a serialized event.
 
-        Args:
-            event: the serialized event.
-            received_ns: its time of reception, ns since the epoch on the clock of this machine. It counts for
-                an event of a client, whose time is unknown, and for bytes that are no event.
+        The time of reception, ``received_ns``, is that of an event of a client, whose own time is unknown,
+        and of bytes that are no event.
         """
         try:
             info = event_info(event)
@@ -134,7 +132,7 @@ class GoneClients:
         return not self._gone
 
     def note(self, client: bytes) -> None:
-        """Note that a client seems to have left."""
+        """Add a client that seems to have left."""
         now = time.monotonic()
         self._forget_old(now)
         self._gone[client] = _Gone(time.time_ns(), now)
@@ -142,7 +140,7 @@ class GoneClients:
     def has(self, client: bytes, *, asked_ns: int) -> bool:
         """Return whether a client sent a request before it recently seemed to have left.
 
-        A client whose request is later is still there.
+        A client that sends a later request is still there.
         """
         gone = self._gone.get(client)
         if gone is None or time.monotonic() >= gone.noted + self.gone_for:

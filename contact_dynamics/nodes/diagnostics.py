@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Tells how the server is, once a second on /diagnostics, to people and to monitors.
+"""Publishes the condition of a node once a second on /diagnostics.
 
-`situations` lists what makes a status a warning or an error.
+`situations` lists the causes of warnings and errors.
 """
 
 from __future__ import annotations
@@ -26,14 +26,14 @@ if TYPE_CHECKING:
     from msg_adapters.status import Response
 
 QOS: Final = QoSProfile(depth=10)
-_REMEMBERED: Final = 1000  # answers whose times are told
+_REMEMBERED: Final = 1000  # number of responses whose times are reported
 
 
 class AnswerTimes:
-    """How long the last answers took, and how many there were by status."""
+    """The durations of the latest responses, and the numbers of responses by status."""
 
     def __init__(self) -> None:
-        """Begin without any."""
+        """Create counters with the value zero."""
         self.answers = 0
         self.refusals = 0
         self.faults = 0
@@ -42,7 +42,7 @@ class AnswerTimes:
         self._fault_at = self._overload_at = -RECENT_S  # s
 
     def note(self, response: Response, *, is_active: bool) -> None:
-        """Note a response that is sent. A server that is not active refuses all questions as BUSY."""
+        """Count a sent response. An inactive server rejects all requests with BUSY, which is no overload."""
         now = time.monotonic()
         self.answers += 1
         self.refusals += response.status != response.OK
@@ -55,7 +55,7 @@ class AnswerTimes:
         self._seconds.append(response.computation_time)
 
     def look(self) -> list[Present]:
-        """Return what is wrong."""
+        """Return the present situations."""
         now, present = time.monotonic(), list[Present]()
         if now - self._fault_at < RECENT_S:
             present.append(Situation.FAULT.present(count=self.faults))
@@ -64,7 +64,7 @@ class AnswerTimes:
         return present
 
     def values(self) -> dict[str, str]:
-        """Return what is told of them."""
+        """Return the values to report."""
         times = sorted(self._seconds)
         slow = times[-max(1, len(times) // 100)] if times else 0.0
         return {
@@ -77,7 +77,7 @@ class AnswerTimes:
 
 
 class Diagnostics:
-    """Publishes the state of a node."""
+    """Publishes the condition of a node."""
 
     def __init__(self, node: Node) -> None:
         """Begin to publish."""
@@ -88,9 +88,7 @@ class Diagnostics:
     def publish(self, values: Mapping[Part, Mapping[str, str]], present: Iterable[Present]) -> None:
         """Publish a status for each part, stamped by the node's clock.
 
-        Args:
-            values: what is reported of each part.
-            present: the situations that are present.
+        A status contains the part's values, and those of the ``present`` situations that belong to it.
         """
         found = list(present)
         array = DiagnosticArray(
@@ -119,7 +117,7 @@ class Diagnostics:
 
 
 def values_of_topics(topics: Iterable[TopicTraffic], faults: Mapping[tuple[str, str], int]) -> dict[str, str]:
-    """Return what is reported of topics, with the faults that were counted on them."""
+    """Return the values to report of topics, and the numbers of their faults."""
     values = {}
     for traffic in topics:
         age = "never" if traffic.age is None else f"{traffic.age:.3f}"
@@ -133,7 +131,7 @@ def values_of_topics(topics: Iterable[TopicTraffic], faults: Mapping[tuple[str, 
 
 
 def values_of_log(status: RecorderStatus | None) -> dict[str, str]:
-    """Return what is reported of the log."""
+    """Return the values to report of the log."""
     if status is None:
         return {"log": "off"}
     return {"written": str(status.written), "lost": str(status.lost), "waiting": str(status.waiting)}

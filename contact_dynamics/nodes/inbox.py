@@ -79,16 +79,10 @@ class InboxNode(Node):
     ) -> Subscription:
         """Subscribe to serialized messages, which are passed to ``receive`` when the node takes them.
 
-        Args:
-            msg_type: the class of the messages.
-            topic: the topic.
-            receive: receives each message. It must not raise.
-            qos: the QoS. Its depth limits the number of messages of one round.
-            may_override: whether parameters may override the QoS.
-            in_rounds: whether `take_messages` takes its messages. Otherwise the node calls `empty`.
-
-        Raises:
-            ConfigurationError: a parameter overrides the QoS by an invalid value.
+        ``receive`` must not raise an error. The depth of the ``qos`` limits the number of messages of one
+        round. If ``may_override`` is set, parameters may override the ``qos``, and an invalid override raises
+        `ConfigurationError`. If ``in_rounds`` is false, `take_messages` leaves out the messages, and the node
+        calls `empty`.
         """
         overrides = QoSOverridingOptions.with_default_policies(callback=_allowed) if may_override else None
         # rclpy writes overrides into the given profile, which other topics share.
@@ -206,7 +200,7 @@ class InboxNode(Node):
 
 
 def _allowed(qos: QoSProfile) -> SetParametersResult:
-    """Reject an overridden QoS with depth 0, with which nothing would be received."""
+    """Reject an overridden QoS with depth 0, which would receive nothing."""
     reason = "" if qos.depth > 0 else f"depth must be a whole number > 0, got {qos.depth}"
     return SetParametersResult(successful=not reason, reason=reason)
 

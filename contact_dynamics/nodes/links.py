@@ -24,8 +24,7 @@ LINK: Final = "link"
 def with_links_read(values: Mapping[str, Any]) -> dict[str, Any]:
     """Return the values of parameters, with the numbers of each link in place of its file.
 
-    Raises:
-        ConfigurationError: a link cannot be read, or one of its numbers is given too.
+    A link that cannot be read, or one of whose numbers is given too, raises `ConfigurationError`.
     """
     found = dict(values)
     for name in [each for each in values if each.startswith("body.") and each.endswith(f".{URDF}")]:

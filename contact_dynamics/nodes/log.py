@@ -44,21 +44,12 @@ class Log:
         on_problem: Callable[[str], object],
         on_notice: Callable[[str], object],
     ) -> None:
-        """Create the folder of the log.
+        """Create the folder of the log in ``directory``, by default in the working directory (an empty text).
 
-        Without the library mcap, which is not in ROS's package index, no log is written. ``on_problem`` and
-        `present` then report that.
-
-        Args:
-            directory: the parent folder. An empty text means the working directory, and None means no log.
-            run: the record of the run.
-            limits: the limits of the files.
-            on_problem: is called with each problem, from the log's thread.
-            on_notice: is called, from the log's thread, with each file that is deleted because of ``limits``,
-                and with what is missing when an interrupted log resumes.
-
-        Raises:
-            ConfigurationError: the folder cannot be created.
+        Raise `ConfigurationError` if it cannot be created. Without a directory (None), or without the library
+        mcap, which is not in ROS's package index, no log is written; ``on_problem`` and `present` report a
+        missing library. The log's thread calls ``on_problem`` with each problem, and ``on_notice`` with each
+        file that is deleted because of the ``limits``, and with what is missing after an interruption.
         """
         self._lacks_mcap = directory is not None and find_spec("mcap") is None
         if self._lacks_mcap:

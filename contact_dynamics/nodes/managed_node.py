@@ -45,22 +45,16 @@ class ManagedNode(InboxNode, LifecycleNode, ABC):
         ros_arguments: Sequence[str] = (),
         **node_options: Any,
     ) -> None:
-        """Read the parameters, and configure and activate the node if ``autostart`` is set.
+        """Read the server's and the node's ``own`` parameters, and start the node if ``autostart`` is set.
 
-        Args:
-            name: its name.
-            own: its parameters besides the server's.
-            ros_arguments: ROS's arguments, as passed to `rclpy.init`.
-            node_options: options of `rclpy.node.Node`.
-
-        Raises:
-            ConfigurationError: a parameter is missing, unknown or not allowed.
+        The ``ros_arguments`` are those of `rclpy.init`, and the ``node_options`` those of `rclpy.node.Node`.
+        Raise `ConfigurationError` if a parameter is missing, unknown or not allowed.
         """
         self._work: Receiving | None = None
         self._own = own
         self._problem: ContactDynamicsError | OSError | None = None
         self._configuration: ServerParameters | None = None
-        self._says_ready = False  # as soon as it is
+        self._says_ready = False  # whether it still has to log that it is ready
         super().__init__(name, **node_options)
         refuse_lost_sections(self, ros_arguments)
         source = NodeParameters(
@@ -94,9 +88,7 @@ class ManagedNode(InboxNode, LifecycleNode, ABC):
     def make_work(self, configuration: ServerParameters, run: Mapping[str, str]) -> Receiving:
         """Return the work of the configured node, with ``run`` as the log's record of the run.
 
-        Raises:
-            ContactDynamicsError: it cannot be made with these parameters.
-            OSError: a file cannot be read or written.
+        Raise `ContactDynamicsError` or `OSError` if that is impossible with these parameters.
         """
 
     def on_configure(self, state: LifecycleState) -> TransitionCallbackReturn:  # noqa: ARG002  it is known
@@ -208,7 +200,7 @@ class ManagedNode(InboxNode, LifecycleNode, ABC):
         super().end_services()
 
     def close(self) -> bool:
-        """Finish the log and report its path; return True, since failures of the log are already reported."""
+        """Finish the log and report its path. Return True: failures of the log are already reported."""
         if self._work is not None:
             self.get_logger().info(self._work.close())
         return True

@@ -101,8 +101,7 @@ class NodeParameters(ParameterSource):
 def refuse_lost_sections(node: Node, arguments: Sequence[str]) -> None:
     """Reject parameter files in ROS's arguments without parameters for a node; warn of similar names.
 
-    Raises:
-        ConfigurationError: a file has no parameters for the node. The message lists its sections.
+    Raise `ConfigurationError`, which lists the sections of the file, if it has none for the node.
     """
     full_name = node.get_fully_qualified_name()
     found = [(path, read_sections(path)) for path in map(Path, files_given(arguments))]

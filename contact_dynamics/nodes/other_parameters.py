@@ -92,8 +92,7 @@ class VisualizerParameters(NamedTuple):
 def read_visualizer_parameters(source: ParameterSource) -> VisualizerParameters:
     """Declare and read the parameters, none of which changes while the visualizer runs.
 
-    Raises:
-        ConfigurationError: one is not allowed, or there is nowhere to draw to.
+    Raise `ConfigurationError` if one is not allowed, or there is nowhere to draw to.
     """
     from contact_dynamics.viewing.sinks import Sinks, ViewerMode
 

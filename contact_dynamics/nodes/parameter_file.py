@@ -49,8 +49,7 @@ class Section(NamedTuple):
 def read_sections(path: Path) -> tuple[Section, ...]:
     """Return the sections of a file.
 
-    Raises:
-        ConfigurationError: the file cannot be read, is not YAML, or does not consist of different sections.
+    Raise `ConfigurationError` if it cannot be read, is not YAML, or does not consist of different sections.
     """
     import yaml  # only nodes with a parameter file need it
 
@@ -117,8 +116,7 @@ def _keys(node: Any, above: tuple[str, ...]) -> Iterator[tuple[tuple[str, ...], 
 def check_sections(path: Path, sections: Sequence[Section], full_name: str) -> str:
     """Return a warning if a section's name is nearly that of a node, ``full_name``, or an empty text.
 
-    Raises:
-        ConfigurationError: the file has no section for the node, or one that contains a parameter twice.
+    Raise `ConfigurationError` if the file has no section for the node, or one with a parameter twice.
     """
     twice = [each for section in sections if section.is_for(full_name) for each in section.repeated]
     if twice:
@@ -190,14 +188,10 @@ class ParameterFile(ParameterSource):
     """The values in a file, with other topics for some bodies if given."""
 
     def __init__(self, path: Path, topics: Sequence[str] = ()) -> None:
-        """Read the file.
+        """Read the file. The ``topics`` ("BODY=ODOMETRY" or "BODY=POSE,TWIST") override those in the file.
 
-        The ``topics`` of states, "BODY=ODOMETRY_TOPIC" or "BODY=POSE_TOPIC,TWIST_TOPIC", override those in
-        the file.
-
-        Raises:
-            ConfigurationError: the file is missing, is not YAML, or has no parameters of the server; or it
-                has a section with nearly the server's name; or a text in ``topics`` has another form.
+        Raise `ConfigurationError` if the file is missing, is not YAML, has no parameters of the server or a
+        section with nearly its name, or if a text in ``topics`` has another form.
         """
         sections = read_sections(path)
         warning = check_sections(path, sections, _NODE)
@@ -224,8 +218,7 @@ def _flat(given: dict[str, Any], prefix: str = "") -> Iterator[tuple[str, Any]]:
 def values_of(config: Path | None, settings: Sequence[str]) -> dict[str, Any]:
     """Return the values of a parameter file, overridden by texts "name:=value".
 
-    Raises:
-        ConfigurationError: the file has no parameters, or a text has another form.
+    Raise `ConfigurationError` if the file has no parameters, or a text has another form.
     """
     values = {} if config is None else dict(ParameterFile(config).values)
     for text in settings:

@@ -84,14 +84,8 @@ class ParameterSource:
     ) -> Any:
         """Return a parameter's value, which has the type of the default.
 
-        Args:
-            name: the name of the parameter.
-            default: its default. The type `float` makes the parameter mandatory.
-            description: its description.
-            bounds: its smallest and largest value.
-
-        Raises:
-            ConfigurationError: the value is missing, has another type, or is out of bounds.
+        The default `float` makes the parameter mandatory; the ``bounds`` are the smallest and largest value.
+        Raise `ConfigurationError` if the value is missing, has another type, or is out of bounds.
         """
         found = self.values.get(name)
         if found is None and default is float:
@@ -169,11 +163,7 @@ class ParameterSource:
         return ConfiguredTopic(name=topic, full_name=full_name, parameter=parameter)
 
     def resolved_topic(self, name: str, topic: str) -> str:
-        """Return the full name of the topic in a parameter.
-
-        Raises:
-            ConfigurationError: the name is invalid.
-        """
+        """Return the full name of the topic in a parameter, or raise `ConfigurationError`."""
         if self._resolve is not None:
             resolved = self._resolve(name, topic)
         elif topic.startswith("~"):
@@ -196,8 +186,7 @@ class ParameterSource:
     def refuse_unknown(self, known: Iterable[str]) -> None:
         """Reject unknown parameters, except for overrides of the quality of service.
 
-        Raises:
-            ConfigurationError: there are unknown ones. The message contains the most similar known names.
+        Raise `ConfigurationError` with the most similar known names.
         """
         given = [name for name in self.values if not is_of_ros(name)]
         self._refuse_others(given, {*known, *self._also_known})

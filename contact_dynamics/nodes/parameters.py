@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The server's parameters. Each is declared once, with its description and range, and read into domain types.
+"""The server's parameters. Each is declared once, with its description and range.
 
 Users edit the commented file `config/server.yaml`. A test checks that both have the same parameters.
-The world, its bodies and their sources are read by `world_parameters`.
+`world_parameters` reads the world, its bodies and the sources of their states.
 
-Bodies, surfaces, gravity, tolerances and most limits may change while the server serves. Topics, the log and
-the worker processes stay as they are for as long as the node is configured.
+Bodies, surfaces, gravity, tolerances and most limits may change while the server runs. Topics, the log and
+the worker processes remain while the node is configured.
 """
 
 from __future__ import annotations
@@ -43,7 +43,7 @@ MEGABYTE: Final = 1_000_000  # bytes of a megabyte
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ServerParameters:
-    """The whole configuration of the server."""
+    """The configuration of the server."""
 
     world: World
     carried: tuple[CarriedSurface, ...]  # the surfaces that move with a body
@@ -88,7 +88,7 @@ def described_server_parameters() -> tuple[DeclaredParameter, ...]:
 
 
 def _known_names(body_names: Iterable[str], surface_names: Iterable[str]) -> set[str]:
-    """Return the names of all parameters that a server with such bodies and surfaces has."""
+    """Return the names of all parameters of a server with these bodies and surfaces."""
     named = {"body.NAME.": [f"body.{name}." for name in body_names]}
     named["surface.NAME."] = [f"surface.{name}." for name in surface_names]
     known = {each.name for each in described_server_parameters()}
@@ -99,11 +99,9 @@ def _known_names(body_names: Iterable[str], surface_names: Iterable[str]) -> set
 
 
 def read_server_parameters(source: ParameterSource) -> ServerParameters:
-    """Read every parameter.
+    """Read all parameters.
 
-    Raises:
-        ConfigurationError: a parameter is missing, has another type, or a value that is not allowed. The
-            message names it.
+    Raise `ConfigurationError`, which names the parameter, if one is missing, of another type, or not allowed.
     """
     body_names, surface_names = _read_names(source)
     source.refuse_unknown(_known_names(body_names, surface_names))
@@ -275,14 +273,13 @@ _FIXED: Final = {
     "log_directory": "log_directory",
     "log_limits": "log_compression, log_file_size, log_file_duration, log_size_limit",
 }
-"""The fields of the configuration that stay, with the parameters that they come from."""
+"""The fields that remain while a node is configured, with their parameters."""
 
 
 def check_change(before: ServerParameters, after: ServerParameters, others: Iterable[str] = ()) -> None:
-    """Refuse a change of what stays as long as a node is configured, with the names of others that differ.
+    """Raise `ConfigurationError` if parameters differ that remain while a node is configured.
 
-    Raises:
-        ConfigurationError: something of it differs. The message names the parameters.
+    The message contains their names. Further such names are ``others``.
     """
     changed = [names for field, names in _FIXED.items() if getattr(before, field) != getattr(after, field)]
     changed += others
@@ -302,7 +299,7 @@ def check_change(before: ServerParameters, after: ServerParameters, others: Iter
 
 
 def bodies_read_otherwise(before: ServerParameters, after: ServerParameters) -> tuple[str, ...]:
-    """Return the bodies whose messages make other states than before, or none any more."""
+    """Return the bodies whose messages now result in other states, or in none."""
     then, now = _readings(before), _readings(after)
     return tuple(name for name in then if then[name] != now.get(name))
 

@@ -54,16 +54,10 @@ class Receiving(ABC):
         run: Mapping[str, str],
         states: StateStore | None = None,
     ) -> None:
-        """Create the log and subscribe. The log records nothing before `_begin`.
+        """Create the log and subscribe. Nothing is logged before `_begin`.
 
-        Args:
-            node: the node.
-            parameters: its configuration.
-            run: the log's record of the run.
-            states: the store of the states. The default stores them only.
-
-        Raises:
-            ConfigurationError: a source or the log's folder does not exist.
+        The log's record of the run is ``run``. The states are stored in ``states`` if it is given. Raise
+        `ConfigurationError` if a source does not exist, or the log's folder cannot be created.
         """
         self._node = node
         self._core = core = ServerCore(parameters, states)
@@ -136,12 +130,9 @@ class Receiving(ABC):
         """Start or stop the work of the active node."""
 
     def change(self, parameters: ServerParameters, *, event: bytes, run: Mapping[str, str]) -> None:
-        """Continue with another configuration, and log it.
+        """Continue with another configuration, which `check_change` allows.
 
-        Args:
-            parameters: the configuration, which `check_change` allows.
-            event: the change as a serialised event.
-            run: the log's record of the run from now on.
+        Log the serialized ``event`` of the change. The files of the log that begin later contain ``run``.
         """
         self._node.take_messages()  # these arrived under the previous configuration
         now_ns = time.time_ns()
@@ -187,11 +178,11 @@ class Receiving(ABC):
         self._core.states.clear()
 
     def _values(self) -> Mapping[Part, Mapping[str, str]]:
-        """Return the values that are reported besides those of states and log."""
+        """Return further values to report."""
         return {}
 
     def _present(self) -> list[Present]:
-        """Return the present situations besides those of states and log."""
+        """Return further present situations."""
         return []
 
     def _look(self) -> None:

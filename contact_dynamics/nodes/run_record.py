@@ -53,10 +53,9 @@ class LoggedParameters(ParameterSource):
     """The parameters in the record of a run. Missing ones have their defaults."""
 
     def __init__(self, run: Mapping[str, str], instead: Mapping[str, Any] | None = None) -> None:
-        """Read a record of `run_record`. The values ``instead`` replace those in the log until its end.
+        """Read a record of `run_record`, or raise `ConfigurationError` if it is invalid.
 
-        Raises:
-            ConfigurationError: the record is invalid.
+        The values ``instead`` replace those in the log until its end.
         """
         self._instead = dict(instead or {})
         try:

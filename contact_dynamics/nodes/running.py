@@ -92,8 +92,7 @@ def run_node(
 def ros_until_stopped(arguments: list[str]) -> Iterator[threading.Event]:
     """Initialize ROS with its arguments, and shut it down at the end; yield the event of `stop_signals`.
 
-    Raises:
-        RuntimeError: rclpy cannot read the arguments, or a file that they name.
+    Raise `RuntimeError` if rclpy cannot read the arguments, or a file that they name.
     """
     ensure_ros_log_directory()
     with stop_signals() as stop:

@@ -58,7 +58,7 @@ class Server(ManagedNode):
         super().__init__(NODE_NAME, ros_arguments=ros_arguments, **node_options)
 
     def make_work(self, configuration: ServerParameters, run: Mapping[str, str]) -> Serving:
-        """Return what answers while the node is active."""
+        """Return the services and the log."""
         return Serving(self, configuration, run=run)
 
 
@@ -78,13 +78,7 @@ class Serving(Receiving):
     def __init__(self, node: InboxNode, parameters: ServerParameters, *, run: Mapping[str, str]) -> None:
         """Begin the log, subscribe and create the services, which reject all requests until `activate`.
 
-        Args:
-            node: the node.
-            parameters: its configuration.
-            run: the log's record of the run.
-
-        Raises:
-            ConfigurationError: a source or the log's folder does not exist.
+        The errors are those of `Receiving`.
         """
         super().__init__(node, parameters, run=run)
         self._path = node.create_publisher(Path, "~/predicted_path", PATH_QOS)

@@ -39,8 +39,7 @@ class ServerCore:
     def __init__(self, parameters: ServerParameters, states: StateStore | None = None) -> None:
         """Begin without states. They are stored in ``states`` if it is given.
 
-        Raises:
-            ConfigurationError: a source of states is missing or invalid (`state_sources`).
+        Raise `ConfigurationError` if a source of states is missing or invalid (`state_sources`).
         """
         self.parameters = parameters
         self.asked_ns = 0
@@ -89,11 +88,7 @@ class ServerCore:
             self.states.expect(body.body_name, expected(body, count))
 
     def question_of(self, service: Service, request: object) -> Question[Answer]:
-        """Return the question of a request.
-
-        Raises:
-            ContactDynamicsError: the request is rejected.
-        """
+        """Return the question of a request, or raise the `ContactDynamicsError` that rejects it."""
         return service.question_of(request, world=self.world, world_frame=self.parameters.world_frame)
 
     def fill(self, service: Service, answer: Answer, response: object) -> None:

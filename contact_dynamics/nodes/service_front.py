@@ -78,13 +78,8 @@ class ServiceFront:
     ) -> None:
         """Create the service.
 
-        Args:
-            node: the node.
-            served: the service.
-            core: the configuration, the published states, and the time at which each request arrives.
-            workers: the processes that answer expensive requests. Without them, this process does.
-            log: receives the service events.
-            answered: is called with each response after it is sent.
+        Expensive requests are answered by the ``workers``, or in this process without them. The ``log``
+        receives the service events. ``answered`` is called with each response after it is sent.
         """
         self._node = node
         self._served = served
@@ -199,7 +194,7 @@ class ServiceFront:
             self.take_events()
 
     def _send(self, call: Call) -> None:
-        """Send a response, unless its client has left. What nobody waits for is done afterwards."""
+        """Send a response, unless its client has left. Other work follows the sending."""
         if not self._is_open():
             return
         if not self._is_gone(call):

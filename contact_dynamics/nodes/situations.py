@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The situations that `/diagnostics` reports: the level of each, and what it says.
+"""The situations that `/diagnostics` reports, each with its level and text.
 
-A status is OK if none of its situations is present. Each of them ends when its cause does. What happens at an
-instant, such as the loss of a message, counts as present for `RECENT_S` after it last happened.
-`docs/diagnostics.md` has this table for users. This file imports no ROS.
+A status is OK if none of its situations is present. A situation ends with its cause. An instantaneous one,
+such as the loss of a message, is present for `RECENT_S` after it last occurred. `docs/diagnostics.md` has
+this table for users. This file imports no ROS.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ from enum import Enum, IntEnum
 from typing import Final, NamedTuple
 
 RECENT_S: Final = 3.0
-"""s. A monitor that looks every few seconds sees what happened at an instant, and it is over soon after."""
+"""s. It is long enough for a monitor that checks every few seconds."""
 
 NO_MCAP: Final = "no log is written, because the Python package mcap is not installed: pip install mcap"
 
@@ -22,14 +22,12 @@ NO_MCAP: Final = "no log is written, because the Python package mcap is not inst
 class FaultLimits:
     """When faults are reported."""
 
-    # s, between two warnings of one kind about one topic. A fault of another kind or topic is reported at
-    # once.
-    warn_every: float = 5.0
-    silent_after: float = 2.0  # s without a message, after which a topic counts as silent
+    warn_every: float = 5.0  # s between two warnings of one kind about one topic
+    silent_after: float = 2.0  # s without a message after which a topic counts as silent
 
 
 class Level(IntEnum):
-    """How bad a situation is, as `diagnostic_msgs/DiagnosticStatus` counts."""
+    """The severity of a situation, as in `diagnostic_msgs/DiagnosticStatus`."""
 
     OK = 0
     WARN = 1
@@ -37,7 +35,7 @@ class Level(IntEnum):
 
 
 class Part(Enum):
-    """What a status is about."""
+    """The subject of a status."""
 
     STATES = "states"
     ANSWERS = "answers"
@@ -60,7 +58,7 @@ class _Row(NamedTuple):
 
 
 class Situation(Enum):
-    """A situation. The value has its status, its level and its text."""
+    """A situation. The value has its status, level and text."""
 
     NO_STATE_YET = _Row(
         Part.STATES, Level.WARN, "no state of {body!r} received on {topics} ({publishers} publishers)"
@@ -111,6 +109,6 @@ class Situation(Enum):
     )
 
     def present(self, **found: object) -> Present:
-        """Return that it is present, with what its text names."""
+        """Return the present situation, with the values in its text."""
         row = self.value
         return Present(row.part, row.level, row.text.format(**found))

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The sources of published states: which there are, and what makes states of their messages, live or logged.
+"""The sources of published states: topics, and the conversion of their messages to states, live or logged.
 
-Each source has an adapter in `msg_adapters`. Installed packages can bring further ones by entry points of the
-group `ENTRY_POINTS`. This file needs the classes of messages and no other part of ROS.
+Each source has an adapter in `msg_adapters`. Installed packages can provide others by entry points of the
+group `ENTRY_POINTS`. This file requires the classes of messages, and no other part of ROS.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ if TYPE_CHECKING:
     from msg_adapters.transforms import TFMessage
 
 ENTRY_POINTS: Final = "contact_dynamics.state_sources"
-"""Group of the entry points of packages that bring an adapter of their own."""
+"""Group of the entry points for adapters of other packages."""
 
 ADAPTERS: Final[Mapping[str, StateAdapter]] = {
     "odometry": ODOMETRY,
@@ -44,7 +44,7 @@ ADAPTERS: Final[Mapping[str, StateAdapter]] = {
     "tf": TF,
     "rigid_bodies": RIGID_BODIES,
 }
-"""The adapters of this package by the name that a configuration gives."""
+"""The adapters of this package, by their names in configurations."""
 
 STATIC_TYPE: Final = "tf2_msgs/msg/TFMessage"
 
@@ -52,16 +52,15 @@ STATIC_TYPE: Final = "tf2_msgs/msg/TFMessage"
 class BodyReader(NamedTuple):
     """The reader of the messages about one body."""
 
-    body_name: str  # the body
+    body_name: str
     # Function from a message to a state, or to None if another message must complete it, or if it contains
     # no state of this body
     state_from: Reader
 
     def believable(self, msg: object) -> KnownState | None:
-        """Return what `state_from` does.
+        """Return the result of `state_from`.
 
-        Raises:
-            ContactDynamicsError: the message is refused, or so is its state (`check_believable`).
+        Raise `ContactDynamicsError` if the message or its state (`check_believable`) is rejected.
         """
         state = self.state_from(msg)
         if state is not None:
@@ -73,10 +72,10 @@ class BodyReader(NamedTuple):
 class StateSource:
     """One topic with messages about bodies, or about the frames that their states are in."""
 
-    topic: str  # its name, as it is configured
-    full_name: str  # its name after ROS's remapping
+    topic: str  # the configured name
+    full_name: str  # after ROS's remapping
     type_name: str  # "package/msg/Name"
-    readers: tuple[BodyReader, ...]  # One for each body. Each reads every message.
+    readers: tuple[BodyReader, ...]  # one for each body, which reads every message
     is_latched: bool = False  # whether later subscribers receive the last messages
     # Whether each message is a complete state, stamped by its leading header, so it can be decoded later or
     # never
@@ -87,17 +86,14 @@ class StateSource:
 
 
 def no_message(data: bytes, type_name: str) -> InvalidFieldError:
-    """Return the error that says that bytes are no message of a type, live and where a log is replayed."""
+    """Return the error for bytes that are no message of a type, for a topic or a log."""
     return InvalidFieldError("data", f"{len(data)} bytes", f"a serialised {type_name}")
 
 
 def expected(body: BodySources, publishers: int | None = None) -> str:
-    """Return the text of NO_STATE for a body: where its states are expected, and what else to do.
+    """Return the text of NO_STATE for a body: the topics of its states, and the alternatives.
 
-    Args:
-        body: the sources of its states.
-        publishers: how many publish on their topics. None means that nobody can know, since a log is
-            replayed, where this is not compared.
+    The number of their ``publishers`` is None in the replay of a log, where it is unknown and not compared.
     """
     topics = " and ".join(dict.fromkeys(topic.full_name for each in body.sources for topic in each.topics))
     instead = "or set state_source: 1 (STATE_EXPLICIT) and provide the field state"
@@ -110,9 +106,8 @@ def expected(body: BodySources, publishers: int | None = None) -> str:
 def adapter_of(name: str, *, parameter: str) -> StateAdapter:
     """Return the adapter of a name, of this package or of an installed one.
 
-    Raises:
-        ConfigurationError: there is none of that name, or what the entry point names is no adapter.
-            ``parameter`` is the parameter that names it.
+    Raise `ConfigurationError`, about the ``parameter`` with the name, if there is none, or if the entry point
+    is no adapter.
     """
     if name in ADAPTERS:
         return ADAPTERS[name]
@@ -134,15 +129,11 @@ def adapter_of(name: str, *, parameter: str) -> StateAdapter:
 
 
 def state_sources(parameters: ServerParameters, *, static: TransformTree) -> tuple[StateSource, ...]:
-    """Return the topics that states come by, each once.
-
-    Args:
-        parameters: the configuration.
-        static: what is known of frames that stand still, to which the topic of their transforms adds.
+    """Return the topics of states, each once. The static transforms on their topic are added to ``static``.
 
     Raises:
-        ConfigurationError: no adapter has the name, or it takes another number of topics, or two sources say
-            different types of one topic, or two bodies have their states by the same messages.
+        ConfigurationError: an adapter does not exist or takes another number of topics, the sources of a
+            topic differ in its type, or two bodies share their messages.
     """
     found: dict[str, StateSource] = {}
     by_frame: dict[tuple[str, str], str] = {}

@@ -38,10 +38,10 @@ if TYPE_CHECKING:
     from contact_dynamics.questions.uncertain_state import KnownState
 
 STATE_QOS = QoSProfile(depth=1000)
-"""Queue of a topic with states, which holds the states of a second at 1 kHz if the process is stalled."""
+"""Queue of a topic with states, which is enough for 1 s at 1 kHz if the process is stalled."""
 
 LATCHED_QOS = QoSProfile(depth=1000, durability=DurabilityPolicy.TRANSIENT_LOCAL)
-"""Queue of static transforms, which receives earlier ones, too."""
+"""Queue of static transforms, which receives earlier ones too."""
 
 _EXAMINE_EVERY_NS: Final = NS_PER_S // 2
 _FRAME_AT: Final = 12  # bytes before a header's frame: encapsulation and stamp
@@ -77,19 +77,10 @@ class StateTopic:
     ) -> None:
         """Subscribe, record every message, and store every state.
 
-        A message without a plausible state, or whose stamp is in the future, is recorded and counted in a
-        warning, but not stored.
-
-        Args:
-            node: the node.
-            source: the source, which converts messages to states.
-            states: the store of the states.
-            record: is called with the topic and each message.
-            offered: is called with the topic and the QoS that its publishers offer.
-            faults: the counter of faults.
-
-        Raises:
-            InvalidFieldError: the package of the source's messages is not installed.
+        A message without a plausible state, or with a stamp in the future, is recorded and counted in
+        ``faults``, but not stored. ``record`` is called with the topic and each message, and ``offered`` with
+        the topic and the QoS that its publishers offer. Raise `InvalidFieldError` if the package of the
+        messages is not installed.
         """
         self._node = node
         self.source = source
@@ -97,8 +88,8 @@ class StateTopic:
         self._record = record
         self._faults = faults
         self._msg_type: type[Any] = message_class(source.type_name)
-        self._length = 0  # the last messages that were examined have it
-        self._frame = b""  # and they have this frame
+        self._length = 0  # of the last decoded message
+        self._frame = b""  # of the same
         self._examined_ns = 0
         self.publishers = 0
         qos = LATCHED_QOS if source.is_latched else STATE_QOS
@@ -115,8 +106,7 @@ class StateTopic:
     def look(self, *, awake_for: float) -> list[Present]:
         """Check publishers and silence, once a second; return the present situations.
 
-        Args:
-            awake_for: s, time for which this process has run without being stopped.
+        ``awake_for`` is the time, s, for which this process has run without being stopped.
         """
         found = self._publishers.look()
         mismatches = [text for text in map(self._mismatch, found) if text]
@@ -201,7 +191,7 @@ class StateTopic:
         now_ns: int | None,
         was_kept: bool = False,
     ) -> None:
-        """Count a rejected message, and note the reason for questions about its bodies."""
+        """Count a rejected message, and store the reason for questions about its bodies."""
         error = in_fields(error)
         self._faults.refuse(self.name, error)
         is_message = isinstance(error, ContactDynamicsError)
@@ -253,13 +243,7 @@ class BodyWatch:
         *,
         clock: Callable[[], float] = time.monotonic,
     ) -> None:
-        """Begin to check.
-
-        Args:
-            sources: the sources of the body's states.
-            topics: the subscriptions, by the full names of their topics.
-            clock: returns seconds.
-        """
+        """Begin to check. The ``topics`` have their full names as keys; ``clock`` returns s."""
         self._name = sources.body_name
         self._sources = [[topics[each.full_name] for each in source.topics] for source in sources.sources]
         self._topics = [topic for source in self._sources for topic in source]
@@ -272,10 +256,8 @@ class BodyWatch:
     def look(self, arrivals: Arrivals, *, silent_after: float, awake_for: float) -> list[Present]:
         """Check the body's states, once a second; return the present situations.
 
-        Args:
-            arrivals: the numbers of its states.
-            silent_after: s, time without a state after which the body counts as silent.
-            awake_for: s, time for which this process has run without being stopped.
+        The body counts as silent after ``silent_after``, s, without a state. ``awake_for`` is the time, s,
+        for which this process has run without being stopped.
         """
         now = self._clock()
         came, rejected = arrivals.came - self._came, arrivals.rejected - self._rejected

@@ -40,11 +40,7 @@ class TopicFaults:
     ) -> None:
         """Create counters with the value zero.
 
-        Args:
-            tell: logs a warning.
-            inform: logs a message that is not a warning. By default it is not logged.
-            limits: the throttle of warnings.
-            clock: returns the time, s.
+        ``tell`` logs warnings; ``inform`` logs other messages, which are not logged by default.
         """
         self.inform: Callable[[str], object] = inform or (lambda _: None)
         self.limits = limits or FaultLimits()
@@ -113,11 +109,9 @@ class TopicTraffic:
             self.faults.add(self.topic, "lost", missing, "messages were lost before they were received")
 
     def look(self, publishers: int, *, awake_for: float) -> list[Present]:
-        """Check publishers and silence, once a second; return the present situations.
+        """Check silence and the number of ``publishers``, once a second; return the present situations.
 
-        Args:
-            publishers: the number of publishers.
-            awake_for: s, time for which this process has run without being stopped.
+        ``awake_for`` is the time, s, for which this process has run without being stopped.
         """
         present: list[Present] = []
         self._is_steady = publishers <= 1

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The visualizer: shows bodies, surfaces, contacts and every answer of a server in rerun, live or to a file.
+"""The visualizer: draws bodies, surfaces, contacts and the responses of a server in rerun, live or to a file.
 
-It is a process of its own: it listens to the bodies' states and to the service events that the server
-publishes, and nothing goes back. It takes the server's parameters, which describe bodies, surfaces and
-topics, and its own (`config/visualizer.yaml`). A drawing that fails is told once, and the rest goes on.
+It is a process of its own, which subscribes to the states and to the server's service events, and publishes
+nothing. It reads the server's parameters, which describe bodies, surfaces and topics, and its own
+(`config/visualizer.yaml`). A drawing that fails is reported once, and the others continue.
 
 `replay.view` draws a log in the same way.
 """
@@ -58,27 +58,27 @@ if TYPE_CHECKING:
 NODE_NAME: Final = "contact_dynamics_visualizer"
 
 EVENT_QOS: Final = QoSProfile(depth=10_000)
-"""Queue depth of the service events. It equals the server's, so that a burst of questions is all drawn."""
+"""Queue depth of the service events, which equals the server's, so that all of a burst are drawn."""
 
 SERVER_WAIT_S: Final = 3.0
-"""How long a start waits for a server: as long as one that is started at the same time may take."""
+"""s. Longest wait for a server, which may start at the same time."""
 
 _NICER: Final = 5
-"""By how much others go first where processors are scarce: answers must not wait for a picture."""
+"""Increase of the process's nice value, since responses must not wait for a drawing."""
 
 _POLL_S: Final = 0.02
 
 
 _LEFT_S: Final = 2.0
-"""How long answers that are left are drawn at the end, before a launch would kill the process."""
+"""s. Longest time for drawing the remaining responses at the end, before a launch kills the process."""
 
 
 class _Waiting(NamedTuple):
-    """An answer that is not drawn yet."""
+    """A response that is not drawn yet."""
 
     shown: Service
     data: bytes  # the event
-    came_ns: int  # when DDS received it
+    came_ns: int  # time of reception by DDS
     now_ns: int | None  # the stamp of the newest of them
 
 
@@ -93,17 +93,15 @@ class Visualizer(InboxNode):
         server_wait: float = 0.0,
         **node_options: Any,
     ) -> None:
-        """Read the parameters, open the sinks, draw the scene and listen.
+        """Read the parameters, open the sinks, draw the scene and subscribe.
 
-        Args:
-            ros_arguments: ROS's arguments, as `rclpy.init` was given them.
-            strict: let errors in drawing raise, instead of telling each kind once.
-            server_wait: s, how long to wait for the server before listening to states.
-            node_options: options of `rclpy.node.Node`.
+        Errors in drawing are raised if ``strict``; otherwise each kind is reported once. Wait at most
+        ``server_wait``, s, for the server before subscribing to states. The ``ros_arguments`` are those of
+        `rclpy.init`, and the ``node_options`` those of `rclpy.node.Node`.
 
         Raises:
             ConfigurationError: a parameter is missing, unknown or not allowed.
-            NowhereToDrawError: a viewer was asked for alone, and there is none.
+            NowhereToDrawError: only a viewer was requested, and there is none.
             OSError: the file cannot be written.
         """
         super().__init__(NODE_NAME, **node_options)
@@ -149,20 +147,20 @@ class Visualizer(InboxNode):
         self.get_logger().info(f"ready: draws {server} to {self._recording.description}")
 
     def take_messages(self) -> None:
-        """Take all states that wait, and then the events, so that an answer has the states before it."""
+        """Take all waiting states, and then the events, so that states are drawn before a later response."""
         super().take_messages()
-        if len(self._answers) < EVENT_QOS.depth:  # others wait in the queues of DDS
+        if len(self._answers) < EVENT_QOS.depth:  # otherwise they wait in the queues of DDS
             for subscription in self._events:
                 self.empty(subscription)
 
     def draw_all(self) -> None:
-        """Draw what came since the last time."""
+        """Draw everything that has arrived."""
         self.take_messages()
         self._draw_answers()
         self._states.draw()
 
     def close(self) -> bool:
-        """Draw what is left and close the sinks. Return whether they took everything."""
+        """Draw the remaining responses and close the sinks; return whether they accepted everything."""
         until = time.monotonic() + _LEFT_S
         self.take_messages()
         while self._answers and time.monotonic() < until:
@@ -178,9 +176,9 @@ class Visualizer(InboxNode):
         return self._recording.close()
 
     def _keep_pace(self) -> None:
-        """Draw the answers that came since the last time, and the states if that is due.
+        """Draw the waiting responses, and the states if that is due.
 
-        An answer is not drawn at once: then this process would wake when the server and its client are busy.
+        A response is not drawn at once, since the server and its client are busy then.
         """
         self.take_messages()
         self._draw_answers()
@@ -189,7 +187,7 @@ class Visualizer(InboxNode):
         self._guarded("files and viewers", self._recording.tend)
 
     def _wait_for_server(self, server: str, events: list[Subscription], patience: float) -> None:
-        """Wait for the server's events, so that nothing is missed by who plays states to their listeners."""
+        """Wait for the server's events, so that none is missed if states are published next."""
         deadline = time.monotonic() + patience
         while not all(subscription.get_publisher_count() for subscription in events):
             if time.monotonic() > deadline:
@@ -207,7 +205,7 @@ class Visualizer(InboxNode):
         return self.subscribe(shown.service_type.Event, topic, receive, EVENT_QOS, in_rounds=False)
 
     def _draw_answers(self, *, until: float = math.inf) -> None:
-        """Draw the answers that wait, and let states that come meanwhile not overflow their queues."""
+        """Draw the waiting responses, and take states meanwhile so that their queues do not overflow."""
         for _ in range(len(self._answers)):
             if time.monotonic() > until:
                 return
@@ -233,13 +231,13 @@ class Visualizer(InboxNode):
         )
 
     def _tell_event(self, msg: MonitorEvent) -> None:
-        """Show an event of a monitor in words."""
+        """Log an event of a monitor as text."""
         stamp_ns, is_unusual = stamp_ns_from_msg(msg.header.stamp), msg.alarm or msg.region == msg.OUTSIDE_99
         tell = partial(self._picture.tell, "monitor", msg.text, stamp_ns=stamp_ns, is_error=is_unusual)
         self._guarded("the monitor's events", tell)
 
     def _follow(self, event: ParameterEvent) -> None:
-        """Draw what the server is configured with from now on."""
+        """Draw the server's changed configuration."""
         if event.node != self._server:
             return
         self._values.update(changed_values(event))
@@ -248,13 +246,13 @@ class Visualizer(InboxNode):
             before, after = self._core.parameters, read_server_parameters(given)
             check_change(before, after)
         except ConfigurationError:
-            return  # parameters of a body come one by one, before that which lists it
+            return  # the parameters of a body arrive one by one, before the list of bodies
         self.draw_all()
         self._core.change(after)
         for topic in self._topics:
             topic.source = self._core.sources[topic.name]
         if _scenery(after) == _scenery(before):
-            return  # each parameter of a change is told by an event, and many do not belong to the world
+            return  # each parameter of a change causes an event, and many do not belong to the world
         change = partial(
             self._picture.change_world,
             after.world,
@@ -277,7 +275,7 @@ class Visualizer(InboxNode):
 
 
 class _HandedOn(StateStore):
-    """Hands all states on, to be drawn."""
+    """Passes all states on to be drawn."""
 
     def __init__(self, states: StatesInTurn) -> None:
         super().__init__(history=0.0, timeout=0.0)
@@ -285,11 +283,11 @@ class _HandedOn(StateStore):
         self._came_ns = 0
 
     def note(self, topic: str, taken: Taken) -> None:  # noqa: ARG002  of all topics alike
-        """Note when the message came whose states are handed on next."""
+        """Store the time of reception of the message whose states are passed on next."""
         self._came_ns = taken.received_ns
 
     def add(self, body_name: str, state: KnownState, *, now_ns: int | None = None) -> None:  # noqa: ARG002
-        """Hand on a state whatever its stamp: those of a log are not of this clock."""
+        """Pass on a state whatever its stamp, since those of a log are of another clock."""
         self._states.add(body_name, state_of(state), came_ns=self._came_ns)
 
     def add_unread(
@@ -300,14 +298,14 @@ class _HandedOn(StateStore):
         *,
         now_ns: int | None = None,  # noqa: ARG002  as above
     ) -> None:
-        """Read and hand on a state, as all are drawn."""
+        """Decode and pass on a state, since all are drawn."""
         state = read()
         if state is not None:
             self.add(body_name, state)
 
 
 def _scenery(parameters: ServerParameters) -> object:
-    """Return all that is drawn of a configuration, to compare it with another one."""
+    """Return the drawn part of a configuration, to compare it with another one."""
     return parameters.world.to_dict(), [each.to_dict() for each in parameters.carried]
 
 

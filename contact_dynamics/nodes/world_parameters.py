@@ -1,8 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The parameters of each body, with the sources of its states, and of each surface.
-
-A shape is one of several primitives, with its pose and the mass that fills it.
-"""
+"""The parameters of each body, with the sources of its states, of shapes, and of each surface."""
 
 from __future__ import annotations
 
@@ -42,27 +39,27 @@ if TYPE_CHECKING:
 
 
 MAX_DEVIATION: Final = 1e6
-"""The largest standard deviation of a state that can be configured, in m, rad, m/s and rad/s."""
+"""m, rad, m/s and rad/s. Largest standard deviation of a state that can be configured."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ConfiguredSource:
     """A source of a body's states."""
 
-    adapter: str  # the name of the adapter that reads its messages
-    topics: tuple[ConfiguredTopic, ...]  # its topics, in the adapter's order
+    adapter: str  # name of the adapter
+    topics: tuple[ConfiguredTopic, ...]  # in the adapter's order
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class BodySources:
     """The sources of a body's states."""
 
-    body_name: str  # the body
+    body_name: str
     frame: str  # the body's frame, whose pose is published
-    velocity_window: float  # s, the time over which a velocity is found from poses
+    velocity_window: float  # s, duration of the poses from which a velocity is estimated
     # Standard deviations of states without a covariance (`with_deviations`), or none
     state_deviations: tuple[float, ...]
-    sources: tuple[ConfiguredSource, ...]  # the sources, of which there may be several or none
+    sources: tuple[ConfiguredSource, ...]  # several, one or none
 
 
 _NOT_TURNED: Final = [0.0, 0.0, 0.0, 1.0]
@@ -79,8 +76,7 @@ def _check_unread(condition: str, **fields: tuple[object, object]) -> None:
 def read_body(source: ParameterSource, name: str) -> tuple[Body, BodySources]:
     """Return a body and the sources of its states.
 
-    Raises:
-        ConfigurationError: a parameter is missing or not allowed.
+    Raise `ConfigurationError` if a parameter is missing or not allowed.
     """
     key = f"body.{name}"
     _read_link(source, key)
@@ -111,7 +107,7 @@ def read_body(source: ParameterSource, name: str) -> tuple[Body, BodySources]:
 
 
 def _read_link(source: ParameterSource, key: str) -> None:
-    """Read the parameters in whose place the numbers of a link are by now (`links`)."""
+    """Read the parameters that `links` replaces by the numbers of a link at the start."""
     of_body = "Mass, inertia, centre of mass and shape are then those of the link, and cannot be given too."
     texts = {
         URDF: f"URDF or SDF file with the body as a link, or its text (`robot_description`). {of_body}",
@@ -139,7 +135,7 @@ def _read_deviations(source: ParameterSource, key: str) -> tuple[float, ...]:
 
 
 def _read_sources(source: ParameterSource, key: str) -> tuple[ConfiguredSource, ...]:
-    """Return the sources of a body's states: the usual ones, each by its topics, and one by its name."""
+    """Return the sources of a body's states: the usual ones by their topics, and one by its name."""
     odometry = source.topic(
         f"{key}.odometry_topic", "Topic of the body's states as nav_msgs/Odometry. Not used if empty."
     )
@@ -224,8 +220,7 @@ def read_surface(
 ) -> Surface | Obstacle | CarriedSurface:
     """Return a plane, an obstacle, or a plane that one of the configured bodies carries.
 
-    Raises:
-        ConfigurationError: a parameter is missing or not allowed.
+    Raise `ConfigurationError` if a parameter is missing or not allowed.
     """
     key, surface = f"surface.{name}", _read_surface(source, name)
     carrier = source.value(
@@ -352,13 +347,13 @@ def _read_surface(source: ParameterSource, name: str) -> Surface | Obstacle:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class _Primitive:
-    """A shape that can be configured by numbers."""
+    """A shape that is configured by numbers."""
 
     description: str  # description of the numbers
     # The check of each number, or None if there are three numbers for each corner
     checks: tuple[Check, ...] | None
-    shape: ShapeMaker  # makes the shape
-    mass: MassMaker  # makes the mass, kg, that fills the shape evenly
+    shape: ShapeMaker
+    mass: MassMaker  # makes a mass, kg, that fills the shape evenly
 
 
 def _of_cylinder(radius: float, length: float, mass: float) -> MassDistribution:
@@ -407,12 +402,12 @@ _PRIMITIVES: Final = {
 }
 
 DESCRIPTIONS: Final = {name: primitive.description for name, primitive in _PRIMITIVES.items()}
-"""The shapes, with what their numbers are. The single number 0.0 stands for no shape."""
+"""The shapes, with descriptions of their numbers. The single number 0.0 means no shape."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class ShapeParameters:
-    """A shape as it is configured, of a body or of an obstacle. Lengths are in m."""
+    """The configured shape of a body or an obstacle. Lengths are in m."""
 
     numbers: dict[str, list[float]]  # the numbers of each shape in `DESCRIPTIONS`
     rounding: float  # radius of the ball that rolls over it
@@ -424,8 +419,7 @@ class ShapeParameters:
     def shape_F(self) -> ConvexShape:
         """Return the shape in its frame, which is empty if none is configured.
 
-        Raises:
-            InvalidFieldError: there is more than one shape, or the numbers do not make it.
+        Raise `InvalidFieldError` if there are several shapes, or the numbers are not valid.
         """
         name = self._name()
         if not name:
@@ -436,8 +430,7 @@ class ShapeParameters:
     def uniform(self, mass: float) -> MassDistribution:
         """Return a mass, kg, that fills the shape evenly, in the body's frame.
 
-        Raises:
-            InvalidFieldError: there is no shape, or it is without volume or rounded.
+        Raise `InvalidFieldError` if there is no shape, or a rounded one or one without volume.
         """
         name = self._name()
         if not name or self.rounding > 0.0:
