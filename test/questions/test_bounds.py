@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from contact_dynamics import Body, ContactDynamicsError, ContactSet, MassProperties
+from contact_dynamics import Body, ContactSet, MassProperties
 from contact_dynamics.errors import InvalidFieldError, TooLargeError
 from contact_dynamics.impact import SeveralContactsLaw
 from contact_dynamics.motion import Drag
@@ -183,15 +183,6 @@ def test_a_window_of_any_length_takes_what_is_kept() -> None:
         for window in (5.0, 1e300)
     ]
     assert [answer.fit.count for answer in answers if answer.fit is not None] == [5, 5]
-
-
-def test_a_body_that_leaves_all_contacts_has_margins() -> None:
-    leaving = state(0.5 * SIDE, v=(0.0, 0.0, 0.5))
-    try:
-        answer = ask(ContactModeQuestion(body="cube", state=leaving, include_margins=True), CONTEXT)
-    except ContactDynamicsError as error:
-        pytest.fail(str(error))
-    assert [mode.mode for mode in answer.modes] == ["ssss"]
 
 
 def test_states_that_leave_a_motion_open_are_refused() -> None:

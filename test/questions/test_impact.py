@@ -18,7 +18,7 @@ from contact_dynamics.errors import (
     OutOfPlaneError,
     SeparatingContactError,
 )
-from contact_dynamics.impact import ImpactOutcome, RestitutionLaw, SequenceEnd, SeveralContactsLaw
+from contact_dynamics.impact import ImpactOutcome, SequenceEnd, SeveralContactsLaw
 from contact_dynamics.plane.projection import PlaneOfMotion
 from contact_dynamics.questions import (
     Context,
@@ -111,25 +111,6 @@ def test_a_body_in_flight_lands_first() -> None:
         answer(ImpactQuestion(body="cube", state=state(), horizon=0.1), CONTEXT)
 
 
-def test_equal_bodies_without_friction_exchange_their_velocities() -> None:
-    """Head on, with e = 1."""
-    found = answer(
-        ImpactQuestion(
-            body=CUBE,
-            state=state(v=(0.0, 0.0, -2.0)),
-            other=CUBE,
-            other_state=state(1.0 - SIDE, v=(0.0, 0.0, 1.0)),
-            contacts=below(friction=0.0, restitution=1.0),
-        )
-    )
-    assert found.other is not None
-    assert found.impact.other_state is not None
-    assert found.impact.state.v_WB_W[2] == pytest.approx(1.0, abs=ROUNDING)
-    assert found.impact.other_state.v_WB_W[2] == pytest.approx(-2.0, abs=ROUNDING)
-    assert found.other.state.v_WB_W[2] == 1.0
-    assert found.impact.kinetic_energy_after == pytest.approx(found.impact.kinetic_energy_before, rel=1e-13)
-
-
 @pytest.mark.parametrize("times", [(40, 50), (30, 36, 50), (20, 30)], ids=["at", "between", "before"])
 def test_the_newest_state_of_a_second_body_is_that_at_the_time_of_the_first(
     times: tuple[int, ...],
@@ -185,19 +166,6 @@ def test_strikes_in_time_begin_at_the_first() -> None:
     assert {strike.contact for strike in strikes} <= set(range(len(found.contacts)))
 
 
-def test_an_uncertain_state_has_a_chance_of_each_outcome() -> None:
-    covariance = np.diag([1e-8] * 6 + [1e-2] * 3 + [1e-4] * 3)
-    uncertain = UncertainState(state=SLIDING, covariance=covariance)
-    found = answer(
-        ImpactQuestion(body=CUBE, state=uncertain, contacts=below(), include_covariance=True)
-    ).impact
-    assert found.outcome_probabilities is not None
-    assert found.outcome_probabilities.sum() + found.miss_probability == pytest.approx(1.0, abs=1e-9)
-    assert found.outcome_probabilities[ImpactOutcome.SLIDES] > 0.9
-    assert found.covariance is not None
-    assert found.covariance[8, 8] == pytest.approx(RESTITUTION**2 * 1e-2, rel=0.1)  # v_n becomes -e v_n
-
-
 def test_an_uncertain_landing_carries_its_covariance_to_the_strike() -> None:
     tilted = replace(state(), q_WB=[0, math.sin(0.3), 0, math.cos(0.3)], w_WB_W=[3.0, 0, 0])
     uncertain = UncertainState(state=tilted, covariance=np.diag([1e-6] * 6 + [1e-4] * 3 + [1e-2] * 3))
@@ -211,14 +179,6 @@ def test_an_uncertain_landing_carries_its_covariance_to_the_strike() -> None:
     assert impact.covariance is not None
     np.testing.assert_allclose(impact.covariance, impact.covariance.T, rtol=0.0, atol=1e-15)
     assert np.linalg.eigvalsh(impact.covariance).min() > -ROUNDING
-
-
-@pytest.mark.parametrize("law", list(RestitutionLaw))
-def test_the_law_of_restitution_is_the_one_asked_for(law: RestitutionLaw) -> None:
-    """Straight below the centre, sliding throughout, all three are one."""
-    found = answer(ImpactQuestion(body=CUBE, state=SLIDING, contacts=below(), restitution_law=law)).impact
-    assert found.restitution_law is law
-    assert found.state.v_WB_W[2] == pytest.approx(RESTITUTION, abs=ROUNDING)
 
 
 @pytest.mark.parametrize(

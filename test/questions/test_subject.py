@@ -148,22 +148,6 @@ def test_an_old_state_is_refused_only_by_a_clock() -> None:
     assert subject_of("cube", PublishedState(), watching(0)).state.stamp_ns == 0
 
 
-def test_a_fit_finds_the_toss_that_was_published() -> None:
-    """To exact states: the toss itself, from all states of the window and no others."""
-    known = watching(*range(0, 200 * MS, 10 * MS))
-    question = TumblingQuestion(
-        body="cube", state=PublishedState(fit_window=0.1), sampling=AtTimes(times=[0.0])
-    )
-    found = tumbling.answer(question, known)
-    assert found.fit is not None
-    assert found.fit.count == 11
-    assert found.fit.position_residual < 1e-12
-    np.testing.assert_allclose(found.state.v_WB_W, rising(190 * MS).v_WB_W, rtol=0.0, atol=1e-10)
-    subject = subject_of("cube", PublishedState(fit_window=0.1), known)
-    assert subject.covariance is not None
-    assert subject.covariance.shape == (12, 12)
-
-
 def test_a_fit_is_of_a_flight_under_the_forces_asked_for() -> None:
     """The cube rises steadily: without weight, or held by a force, against its drag too."""
     states = StateStore(history=10.0, timeout=0.5)
