@@ -132,10 +132,22 @@ def resting(noisy: NoisyState, contacts: ContactSet, *, velocity_tolerance: floa
             rows[which, axes].reshape(-1, 12), violation.ravel(), noisy, beside, velocity_tolerance
         )
 
+    def settled(found: NoisyState, held: Sequence[tuple[Sequence[int], slice]]) -> NoisyState:
+        """Return a state whose components are zero though its pose, which velocities depend on, was moved."""
+        state = found.state
+        for _ in range(_ROUNDS if held and contacts.surfaces_move else 0):
+            along = np.einsum("cij,cj->ci", frames, relative_velocities(state, contacts))
+            violation = np.concatenate([along[which, axes].ravel() for which, axes in held])
+            conditions = np.concatenate([rows[which, axes].reshape(-1, 12) for which, axes in held])
+            there = noisy._replace(state=state)
+            state = _hypothesis(conditions, violation, there, there, math.inf).state.state
+        return found._replace(state=state)
+
     everything = that_zero(range(len(contacts)), slice(0, 3), noisy)
     if everything.passes:
-        return everything.state
+        return settled(everything.state, [(range(len(contacts)), slice(0, 3))])
     found, may_hold = noisy, list(range(len(contacts)))
+    held: list[tuple[Sequence[int], slice]] = []
     for axes in (slice(0, 1), slice(1, 3)):
         likeliest_first = sorted(may_hold, key=lambda i: that_zero([i], axes, noisy).size)
         may_hold = []
@@ -144,7 +156,8 @@ def resting(noisy: NoisyState, contacts: ContactSet, *, velocity_tolerance: floa
             if hypothesis.passes:
                 found = hypothesis.state
                 may_hold.append(i)
-    return found
+                held.append(([i], axes))
+    return settled(found, held)
 
 
 def possible_motions(

@@ -8,14 +8,14 @@ surface has the pose, the velocities and the accelerations of that body.
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, Final, NamedTuple
 
 import numpy as np
 
 from contact_dynamics.constants import seconds_between
 from contact_dynamics.errors import InvalidFieldError, NoStateError, StaleStateError
 from contact_dynamics.motion.between_states import state_between
-from contact_dynamics.questions.uncertain_state import state_of
+from contact_dynamics.questions.uncertain_state import UncertainState, state_of
 from contact_dynamics.records import Record
 from contact_dynamics.rotations.many import turned
 from contact_dynamics.validation import check_not_negative
@@ -70,6 +70,15 @@ class CarriedSurface(Record):
         object.__setattr__(self, "acceleration_window", window)
 
 
+class CarrierNoise(NamedTuple):
+    """The noise with which a plane is known that a body carries, if the body's states have covariances."""
+
+    carrier: str
+    plane: Surface  # at the instant of the question
+    state: BodyState  # that of the carrier, for which the covariance is published
+    covariance: FloatArray  # (12, 12), in the order of `UncertainState`
+
+
 def with_carried(
     world: World,
     carried: Iterable[CarriedSurface],
@@ -78,8 +87,8 @@ def with_carried(
     stamp_ns: int | None,
     now_ns: int | None,
     max_extrapolation: float,
-) -> tuple[World, tuple[str, ...]]:
-    """Return a world with carried surfaces at an instant, and warnings about their motion.
+) -> tuple[World, tuple[str, ...], tuple[CarrierNoise, ...]]:
+    """Return a world with carried surfaces at an instant, warnings about their motion, and their noise.
 
     Args:
         world: The world, with the bodies that carry the surfaces.
@@ -95,6 +104,7 @@ def with_carried(
     """
     planes: list[Surface] = []
     warnings: list[str] = []
+    noise: list[CarrierNoise] = []
     for each in carried:
         name = each.body_name
         if stamp_ns is None:
@@ -120,10 +130,13 @@ def with_carried(
                 f"estimate its acceleration, got {len(known)} (with an acceleration_window of 0, it is zero)"
             )
         planes.append(_plane_at(each, world.body(name), known, instant_ns))
+        nearest = earlier if later is None else later
+        if isinstance(nearest, UncertainState):
+            noise.append(CarrierNoise(name, planes[-1], nearest.state, nearest.covariance))
         if later is None and ahead > 0.0:
             age = f"{1e3 * ahead:.3g} ms older than the question's state"
             warnings.append(f"surface {each.surface.name!r}: the latest state of {name!r} is {age}")
-    return replace(world, surfaces=(*world.surfaces, *planes)), tuple(warnings)
+    return replace(world, surfaces=(*world.surfaces, *planes)), tuple(warnings), tuple(noise)
 
 
 def _plane_at(carried: CarriedSurface, carrier: Body, states: Sequence[BodyState], stamp_ns: int) -> Surface:

@@ -372,6 +372,7 @@ def _case(question: ContactModeQuestion, context: Context) -> tuple[ModeCase, No
         world,
         distance_tolerance=distance_tolerance,
         velocity_tolerance=velocity_tolerance,
+        carriers=context.carrier_noise,
     )
     if len(contacts) > MAX_PLANAR_CONTACTS:
         raise TooLargeError("contacts", f"{len(contacts)} contacts", f"at most {MAX_PLANAR_CONTACTS}")

@@ -7,7 +7,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 
 from contact_dynamics.errors import InvalidFieldError, NotSupportedError
-from contact_dynamics.questions.carried_surface import CarriedSurface
+from contact_dynamics.questions.carried_surface import CarriedSurface, CarrierNoise
 from contact_dynamics.questions.state_store import StateStore
 from contact_dynamics.records import NamedInt, Record
 from contact_dynamics.tolerances import DISTANCE_TOLERANCE, OUT_OF_PLANE_SPEED, VELOCITY_TOLERANCE
@@ -66,6 +66,7 @@ class Context(Record):
         carried: Further surfaces, which move with bodies of the world.
         notes: Warnings about carried surfaces in the context of one question, whose world contains them
             (`at_instant`), and None otherwise.
+        carrier_noise: Noise with which the bodies that carry them are known, in the same context.
 
     Raises:
         NotSupportedError: the motion of a surface of the world is not steady.
@@ -78,6 +79,7 @@ class Context(Record):
     now_ns: Callable[[], int | None] | None = None
     carried: tuple[CarriedSurface, ...] = ()
     notes: tuple[str, ...] | None = None
+    carrier_noise: tuple[CarrierNoise, ...] = ()
 
     def __post_init__(self) -> None:
         """Reject surfaces whose poses or velocities depend on the time, unless it is for one question."""

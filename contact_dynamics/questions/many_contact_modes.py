@@ -201,8 +201,10 @@ def answer(question: ManyContactModesQuestion, context: Context | None = None) -
             known.world,
             distance_tolerance=tolerance,
             velocity_tolerance=or_default(asked.velocity_tolerance, known.defaults.velocity_tolerance),
+            carriers=known.carrier_noise,
         )
         state = subject.state
+        known = replace(known, carrier_noise=())  # the state is the likeliest one already
     counts = question.contact_counts or (len(contacts),)
     ends = np.cumsum(counts).tolist()
     sets = [

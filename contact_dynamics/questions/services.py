@@ -382,7 +382,7 @@ def at_instant(question: Question[Answer], context: Context) -> Context:
     stamp_ns = getattr(getattr(about, "state", None), "stamp_ns", 0)
     if stamp_ns is None:  # the latest published state
         stamp_ns = context.states.newest(name, now_ns=now_ns).stamp_ns
-    world, warnings = with_carried(
+    world, warnings, noise = with_carried(
         context.world,
         [each for each in context.carried if each.body_name != name],
         context.states,
@@ -390,7 +390,7 @@ def at_instant(question: Question[Answer], context: Context) -> Context:
         now_ns=now_ns,
         max_extrapolation=context.defaults.max_extrapolation,
     )
-    return replace(context, world=world, carried=(), notes=warnings)
+    return replace(context, world=world, carried=(), notes=warnings, carrier_noise=noise)
 
 
 def ask(question: Question[Answer_co], context: Context | None = None) -> Answer_co:

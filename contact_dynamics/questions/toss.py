@@ -148,7 +148,7 @@ class TossAnswer(Answer):
         all_followed: Whether ``alternatives`` contains all other branches.
         distribution: Distribution of the outcomes under uncertain state, parameters and impacts, or None
             without samples.
-        warnings: Uncertain motions of carried surfaces.
+        warnings: Uncertain motions of carried surfaces, and noise that the distribution leaves out.
     """
 
     body_name: str
@@ -223,7 +223,14 @@ def answer(question: TossQuestion, context: Context | None = None) -> TossAnswer
         alternatives=tuple(_path(other, rate) for other in went.alternatives),
         all_followed=went.all_followed,
         distribution=distribution,
-        warnings=known.notes or (),
+        warnings=(*(known.notes or ()), *(_without_noise(known) if distribution is not None else ())),
+    )
+
+
+def _without_noise(known: Context) -> tuple[str, ...]:
+    carriers = dict.fromkeys(each.carrier for each in known.carrier_noise)
+    return tuple(
+        f"the distribution leaves out the noise of {name!r}, which carries a surface" for name in carriers
     )
 
 

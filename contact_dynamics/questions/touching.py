@@ -17,6 +17,7 @@ from contact_dynamics.contact.touches import RIM_POINTS
 from contact_dynamics.contact.velocities import relative_velocities
 from contact_dynamics.errors import NoContactError, NoShapeError, NotSupportedError
 from contact_dynamics.questions.extent import check_extent
+from contact_dynamics.rigid_body.published_frame import covariance_of_other_point
 from contact_dynamics.shapes.hull_features import RIM_CORNERS, features_of
 from contact_dynamics.shapes.obstacle import closest_points
 from contact_dynamics.tolerances import DISTANCE_TOLERANCE, MOVES_INTO
@@ -25,10 +26,14 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from contact_dynamics.contact.contact import ContactSet
+    from contact_dynamics.questions.carried_surface import CarrierNoise
     from contact_dynamics.questions.subject import Subject
     from contact_dynamics.rigid_body.body import BodyState
     from contact_dynamics.validation import FloatArray
     from contact_dynamics.world import Body, World
+
+_FAR: Final = 6.0
+"""Standard deviations of the distance beyond which a body does not touch a carried plane."""
 
 _PAIRS_AT_ONCE: Final = 100_000
 """Points times triangles whose distances are worked out together, in some 50 MB."""
@@ -71,8 +76,11 @@ def in_contact(
     *,
     distance_tolerance: float,
     velocity_tolerance: float,
+    carriers: Sequence[CarrierNoise] = (),
 ) -> tuple[Subject, ContactSet, NoisyState | None]:
     """Return a subject and its contacts, which touch and rest where the noise of its state allows it.
+
+    The noise of the bodies that carry planes near it, ``carriers``, counts too.
 
     Without a covariance the state is exact. With one, it is the likeliest state in which the contacts that
     may touch and rest do so (`contact.noise`). The third value is then the state, with its noise, in which
@@ -81,6 +89,7 @@ def in_contact(
     Raises:
         NoContactError: there is no contact.
     """
+    subject = _with_noise_of(carriers, subject, distance_tolerance=distance_tolerance)
     if subject.covariance is None:
         return subject, contacts_of(named, subject, world, distance_tolerance=distance_tolerance), None
     check_extent(subject.body.mass_properties, subject.state)
@@ -91,6 +100,28 @@ def in_contact(
     contacts = contacts_of(named, subject, world, distance_tolerance=distance_tolerance)
     found = resting(noisy, contacts, velocity_tolerance=velocity_tolerance)
     return replace(subject, state=found.state, covariance=found.root @ found.root.T), contacts, noisy
+
+
+def _with_noise_of(
+    carriers: Sequence[CarrierNoise], subject: Subject, *, distance_tolerance: float
+) -> Subject:
+    """Return a subject with the covariance of its state relative to the carriers of the planes near it.
+
+    A plane is near if the body may touch it within `_FAR` standard deviations. The errors of a carrier are
+    those of a rigid motion, which the subject's own errors oppose or add to.
+    """
+    if subject.body.shape.is_empty:
+        return subject
+    own = np.zeros((12, 12)) if subject.covariance is None else subject.covariance
+    added: dict[str, FloatArray] = {}
+    for each in carriers:
+        lever_B = each.state.R_WB.T @ (subject.state.p_WB_W - each.state.p_WB_W)
+        moved = covariance_of_other_point(each.covariance, each.state, lever_B)
+        near = distance_tolerance + _FAR * math.sqrt(float(np.trace((own + moved)[:3, :3])))
+        found = nearest_surface(subject.body, subject.state, (each.plane,))
+        if found is not None and found[1] <= near:
+            added[each.carrier] = moved
+    return replace(subject, covariance=own + sum(added.values())) if added else subject
 
 
 def outside_shape(
@@ -170,8 +201,10 @@ def moves_into(
     if approach[fastest] <= max(velocity_tolerance, MOVES_INTO * float(np.abs(velocities).max())):
         return ()
     return (
-        f"after the impact, {body.name!r} moves into {contacts.surfaces[fastest]!r}, which it touches, at "
-        f"{approach[fastest]:.3g} m/s: the contacts there were not part of the impact",
+        (
+            f"after the impact, {body.name!r} moves into {contacts.surfaces[fastest]!r}, which it touches, "
+            f"at {approach[fastest]:.3g} m/s: the contacts there were not part of the impact"
+        ),
     )
 
 

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from typing import Final
 
 import numpy as np
@@ -18,15 +19,19 @@ from contact_dynamics.questions import (
     Context,
     Defaults,
     ImpactQuestion,
+    Problem,
     PublishedState,
     StateStore,
     TossQuestion,
+    TossSampling,
     TumblingQuestion,
+    UncertainState,
     UntilContact,
     ask,
 )
+from contact_dynamics.questions.many_contact_modes import ManyContactModesQuestion
 from contact_dynamics.rigid_body.body import BodyState
-from contact_dynamics.rotations.many import quaternions_of
+from contact_dynamics.rotations.many import quaternions_of, turned
 from contact_dynamics.world import Body, Surface, World
 
 G: Final = 9.80665
@@ -174,6 +179,72 @@ def test_accelerations_are_estimated_from_three_states_if_they_are_published_slo
         states.add("tray", motion.state(0.01 * k))
     verdict, letters, warnings = modes_of_cup(context(states), motion.state(0.145, (0.05, 0.0, 0.06)))
     assert (verdict, letters, warnings) == (ModeVerdict.UNIQUE, {letter}, ())
+
+
+NOISE: Final = np.repeat([5e-4, 2e-3, 5e-3, 0.02], 3)  # m, rad, m/s and rad/s along each axis
+
+
+def measured(state: BodyState, chance: np.random.Generator) -> UncertainState:
+    error = NOISE * chance.normal(size=12)
+    drawn = BodyState(
+        p_WB_W=state.p_WB_W + error[:3],
+        q_WB=turned(state.q_WB[None], error[None, 3:6])[0],
+        v_WB_W=state.v_WB_W + error[6:9],
+        w_WB_W=state.w_WB_W + error[9:],
+        stamp_ns=state.stamp_ns,
+    )
+    return UncertainState(state=drawn, covariance=np.diag(NOISE**2))
+
+
+def known_with_noise(motion: Motion, chance: np.random.Generator) -> Context:
+    states = StateStore(history=5.0, timeout=0.5)
+    for k in range(21):
+        states.add("tray", measured(motion.state(0.01 * k), chance))
+    surface = CarriedSurface(body_name="tray", surface=TOP, acceleration_window=0.2)
+    return Context(world=World(bodies=(TRAY, CUP)), states=states, carried=(surface,))
+
+
+@pytest.mark.parametrize("share", [0.0, 0.5])
+def test_a_cup_at_rest_on_a_tray_rests_though_both_are_measured_with_noise(share: float) -> None:
+    """One in a thousand draws may fail. Without the tray's noise, one in eight does."""
+    chance, motion = np.random.default_rng(5), Motion(a=(share * FRICTION * G, 0.0, 0.0))
+    wrong = 0
+    for _ in range(50):
+        known = known_with_noise(motion, chance)
+        question = ContactModeQuestion(
+            body="cup", state=measured(motion.state(0.2, (0.05, 0.0, 0.06)), chance), problem=Problem.SPATIAL
+        )
+        answer = ask(question, known)
+        rests = answer.verdict is ModeVerdict.UNIQUE and answer.modes[0].mode == "ffff"
+        batch = ask(
+            ManyContactModesQuestion(asked=question, forces_W=[[0, 0, 0]], torques_W=[[0, 0, 0]]), known
+        )
+        assert batch.verdicts[0] == answer.verdict
+        wrong += not rests
+    assert wrong == 0
+
+
+def test_a_cup_that_slides_on_a_tray_is_not_at_rest_within_the_noise_of_both() -> None:
+    chance, motion = np.random.default_rng(6), Motion()
+    known = known_with_noise(motion, chance)
+    sliding = motion.state(0.2, (0.05, 0.0, 0.06)).with_velocities([0.1, 0.0, 0.0], [0.0, 0.0, 0.0])
+    answer = ask(ContactModeQuestion(body="cup", state=measured(sliding, chance)), known)
+    assert {letter for mode in answer.modes for letter in mode.mode} == {"c"}
+
+
+def test_a_sampled_toss_says_that_it_leaves_out_the_noise_of_the_carrier() -> None:
+    chance, motion = np.random.default_rng(7), Motion()
+    above = motion.state(0.2, (0.05, 0.0, 0.3))
+    known = known_with_noise(motion, chance)
+    (plane,) = known.carried
+    still = StateStore(history=5.0, timeout=0.5)
+    still.add("tray", UncertainState(state=motion.state(0.2), covariance=np.diag(NOISE**2)))
+    known = replace(known, states=still, carried=(replace(plane, acceleration_window=0.0),))
+    question = TossQuestion(body="cup", state=above, sampling=TossSampling(count=10))
+    assert ask(question, known).warnings == (
+        "the distribution leaves out the noise of 'tray', which carries a surface",
+    )
+    assert ask(replace(question, sampling=None), known).warnings == ()
 
 
 def test_too_few_states_for_an_acceleration_are_an_error() -> None:
