@@ -68,11 +68,11 @@ class AnswerTimes:
         times = sorted(self._seconds)
         slow = times[-max(1, len(times) // 100)] if times else 0.0
         return {
-            "answers": str(self.answers),
-            "of them rejected": str(self.refusals),
-            "of them internal errors": str(self.faults),
-            "time of an answer, median, ms": f"{1e3 * statistics.median(times):.3f}" if times else "",
-            "time of an answer, slowest of 100, ms": f"{1e3 * slow:.3f}" if times else "",
+            "responses": str(self.answers),
+            "rejected requests": str(self.refusals),
+            "internal errors": str(self.faults),
+            "computation time, median, ms": f"{1e3 * statistics.median(times):.3f}" if times else "",
+            "computation time, 99th percentile, ms": f"{1e3 * slow:.3f}" if times else "",
         }
 
 
@@ -123,7 +123,7 @@ def values_of_topics(topics: Iterable[TopicTraffic], faults: Mapping[tuple[str, 
         age = "never" if traffic.age is None else f"{traffic.age:.3f}"
         values[f"{traffic.topic}: messages"] = str(traffic.received)
         values[f"{traffic.topic}: rate, Hz"] = f"{traffic.rate:.1f}"
-        values[f"{traffic.topic}: age of the newest, s"] = age
+        values[f"{traffic.topic}: age of the latest, s"] = age
         values[f"{traffic.topic}: lost"] = str(traffic.lost)
     for (topic, kind), count in faults.items():
         values[f"{topic}: {kind}"] = str(count)

@@ -104,7 +104,7 @@ class Serving(Receiving):
     def preparations(self) -> str:
         """A text about what is not ready yet."""
         count = 0 if self._workers is None else self._workers.count
-        return f"{count} workers start; quick questions are answered meanwhile"
+        return f"{count} workers start; inexpensive requests are answered meanwhile"
 
     def activate(self, *, is_active: bool) -> None:
         """Answer requests from now on, or reject them."""
@@ -167,7 +167,7 @@ class Serving(Receiving):
 
     def _values(self) -> Mapping[Part, Mapping[str, str]]:
         waiting = 0 if self._workers is None else self._workers.waiting
-        return {Part.ANSWERS: {**self._answer_times.values(), "hard questions that wait": str(waiting)}}
+        return {Part.ANSWERS: {**self._answer_times.values(), "queued requests": str(waiting)}}
 
     def _present(self) -> list[Present]:
         return [*self._look_at_names(), *self._answer_times.look(), *self._look_at_workers()]

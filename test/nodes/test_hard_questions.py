@@ -230,7 +230,7 @@ def test_a_server_is_ready_once_its_workers_are(tmp_path: Path) -> None:
             told = printed(server)
             assert "ready" not in told
             assert told.startswith("contact-dynamics server: starting")
-            assert "2 workers start; quick questions are answered meanwhile" in told
+            assert "2 workers start; inexpensive requests are answered meanwhile" in told
         finally:
             os.kill(stopped[0], signal.SIGCONT)
         wait_for(server, "ready: bodies brick")
