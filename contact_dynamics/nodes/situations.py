@@ -51,64 +51,59 @@ class Present(NamedTuple):
     text: str  # what is reported
 
 
-class _Row(NamedTuple):
-    part: Part
-    level: Level
-    text: str
-
-
 class Situation(Enum):
-    """A situation. The value has its status, level and text."""
+    """A situation. Its value contains names of values in the text."""
 
-    NO_STATE_YET = _Row(
+    NO_STATE_YET = Present(
         Part.STATES, Level.WARN, "no state of {body!r} received on {topics} ({publishers} publishers)"
     )
-    NO_MATCH = _Row(
+    NO_MATCH = Present(
         Part.STATES, Level.ERROR, "{topic}: {count} of {publishers} publishers cannot be received: {reason}"
     )
-    ALL_REJECTED = _Row(
+    ALL_REJECTED = Present(
         Part.STATES, Level.ERROR, "the states of {body!r} are rejected, the last because {reason}"
     )
-    SOME_REJECTED = _Row(
+    SOME_REJECTED = Present(
         Part.STATES, Level.WARN, "some states of {body!r} are rejected, the last because {reason}"
     )
-    OLD = _Row(
+    OLD = Present(
         Part.STATES,
         Level.ERROR,
         "the states of {body!r} are too old on arrival, the last by {age:.3f} s (state_timeout): "
         "do the clocks agree?",
     )
-    SILENT = _Row(Part.STATES, Level.WARN, "{topic} is silent")
-    BODY_SILENT = _Row(Part.STATES, Level.WARN, "no state of {body!r} is received any more on {topics}")
-    LOST = _Row(
+    SILENT = Present(Part.STATES, Level.WARN, "{topic} is silent")
+    BODY_SILENT = Present(Part.STATES, Level.WARN, "no state of {body!r} is received any more on {topics}")
+    LOST = Present(
         Part.STATES, Level.WARN, "{topic}: messages were lost before they were received, {count} so far"
     )
-    SEVERAL_PUBLISHERS = _Row(
+    SEVERAL_PUBLISHERS = Present(
         Part.STATES, Level.WARN, "{topic}: {publishers} publishers send states of one body"
     )
-    TWIST_AXES = _Row(
+    TWIST_AXES = Present(
         Part.STATES,
         Level.WARN,
         "{topic}: the twist disagrees with the poses by {speed:.1f} m/s; in nav_msgs/Odometry it is in the "
         "axes of child_frame_id",
     )
-    NO_CLOCK = _Row(Part.STATES, Level.WARN, "use_sim_time is true and no time was received on /clock")
-    SAME_NAME = _Row(
+    NO_CLOCK = Present(Part.STATES, Level.WARN, "use_sim_time is true and no time was received on /clock")
+    SAME_NAME = Present(
         Part.ANSWERS, Level.ERROR, "another node has this name, and both answer the same requests"
     )
-    FAULT = _Row(Part.ANSWERS, Level.ERROR, "internal errors of the server, {count} so far")
-    OVERLOADED = _Row(Part.ANSWERS, Level.WARN, "requests were rejected as BUSY or TIMEOUT, {count} so far")
-    WORKERS = _Row(Part.ANSWERS, Level.WARN, "{ready} of {count} workers are ready")
-    CHANGED = _Row(Part.EVENTS, Level.WARN, "the {coefficient} of {surface} has changed: {estimates}")
-    NO_MCAP = _Row(Part.LOG, Level.WARN, NO_MCAP)
-    LOG_INTERRUPTED = _Row(Part.LOG, Level.ERROR, "{problem}; {lost} messages are missing so far")
-    LOG_DROPPING = _Row(Part.LOG, Level.ERROR, "{problem}; {lost} messages are lost so far")
-    LOG_REJECTING = _Row(Part.LOG, Level.WARN, "{problem}")
-    LOG_NOT_AWAITED = _Row(
+    FAULT = Present(Part.ANSWERS, Level.ERROR, "internal errors of the server, {count} so far")
+    OVERLOADED = Present(
+        Part.ANSWERS, Level.WARN, "requests were rejected as BUSY or TIMEOUT, {count} so far"
+    )
+    WORKERS = Present(Part.ANSWERS, Level.WARN, "{ready} of {count} workers are ready")
+    CHANGED = Present(Part.EVENTS, Level.WARN, "the {coefficient} of {surface} has changed: {estimates}")
+    NO_MCAP = Present(Part.LOG, Level.WARN, NO_MCAP)
+    LOG_INTERRUPTED = Present(Part.LOG, Level.ERROR, "{problem}; {lost} messages are missing so far")
+    LOG_DROPPING = Present(Part.LOG, Level.ERROR, "{problem}; {lost} messages are lost so far")
+    LOG_REJECTING = Present(Part.LOG, Level.WARN, "{problem}")
+    LOG_NOT_AWAITED = Present(
         Part.LOG, Level.WARN, "the disk took too long, and answers are sent before they are on it"
     )
 
     def present(self, **found: object) -> Present:
         """Return the present situation, with the values in its text."""
-        row = self.value
-        return Present(row.part, row.level, row.text.format(**found))
+        return self.value._replace(text=self.value.text.format(**found))

@@ -88,8 +88,8 @@ class StateTopic:
         self._record = record
         self._faults = faults
         self._msg_type: type[Any] = message_class(source.type_name)
-        self._length = 0  # of the last decoded message
-        self._frame = b""  # of the same
+        self._length = 0  # length of the last decoded message
+        self._frame = b""  # frame of the same message
         self._examined_ns = 0
         self.publishers = 0
         qos = LATCHED_QOS if source.is_latched else STATE_QOS

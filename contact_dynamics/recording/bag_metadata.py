@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A bag's ``metadata.yaml`` has what rosbag2 of Jazzy writes (version 9), as JSON, which is YAML.
+"""The content of a bag's ``metadata.yaml``, as rosbag2 of Jazzy writes it (version 9), in JSON (valid YAML).
 
-The MCAP file has the same, in a record of its own. The quality of service of a topic is YAML too: a list of
-what each of its publishers offers. rosbag2 fails on a map that lacks one of the nine keys.
+The MCAP file has the same in a record of its own. The quality of service of a topic is YAML too: a list of
+the offers of its publishers. rosbag2 fails on a map that lacks one of the nine keys.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 METADATA_FILE: Final = "metadata.yaml"
 BAG_KEY: Final = "rosbag2_bagfile_information"  # its outermost key
-RUN_RECORD: Final = "contact_dynamics"  # the MCAP metadata record that says how the run was made
+RUN_RECORD: Final = "contact_dynamics"  # the MCAP metadata record that describes the run
 OFFERED_QOS: Final = "offered_qos_profiles"  # in the metadata of a channel, as rosbag2 names it
 TYPE_HASH: Final = "topic_type_hash"  # beside it
 CHECKSUM_KEY: Final = "checksum"  # in that record, because MCAP gives metadata none
@@ -61,7 +61,7 @@ _WORDS: Final = {
     "durability": ("system_default", "transient_local", "volatile", "unknown", "best_available"),
     "liveliness": ("system_default", "automatic", "unknown", "manual_by_topic", "unknown", "best_available"),
 }
-"""The names of policies by their numbers in rmw, which stand in bags from before ROS 2 Jazzy."""
+"""The names of policies by their numbers in rmw, which bags from before ROS 2 Jazzy contain."""
 
 
 _DURATIONS: Final = ("deadline", "lifespan", "liveliness_lease_duration")
@@ -94,7 +94,7 @@ def qos_maps(offers: tuple[OfferedQos, ...]) -> list[dict[str, Any]]:
 
 
 def offered_qos(text: str) -> list[OfferedQos]:
-    """Return what publishers offered, by the YAML list that a bag has for a topic.
+    """Return the offers of publishers in the YAML list that a bag has for a topic.
 
     Unreadable and missing entries are left out.
     """
@@ -127,7 +127,7 @@ def _profile(found: dict[str, Any]) -> OfferedQos:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class DeclaredTopic:
-    """A topic of a bag: its absolute name, its type, and what its publishers offer."""
+    """A topic of a bag: its absolute name, its type, and the offers of its publishers."""
 
     name: str
     definition: TypeDefinition
@@ -146,12 +146,12 @@ class FileSummary:
 
 
 def sealed_run(run: Mapping[str, str]) -> dict[str, str]:
-    """Return the record of the run: how it was made, and a checksum."""
+    """Return the record of the run with a checksum."""
     return {**run, CHECKSUM_KEY: _checksum(run)}
 
 
 def unsealed_run(record: Mapping[str, str]) -> dict[str, str] | None:
-    """Return how the run was made, or None if the checksum is missing or does not match."""
+    """Return the record of the run without its checksum, or None if that is missing or does not match."""
     run = {key: value for key, value in record.items() if key != CHECKSUM_KEY}
     return run if record.get(CHECKSUM_KEY) == _checksum(run) else None
 

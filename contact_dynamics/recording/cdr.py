@@ -93,10 +93,8 @@ def decode_columns(messages: Sequence[LoggedMessage]) -> tuple[Message, NDArray[
     """Return many messages of a topic as one, whose numbers are arrays with a row for each of them.
 
     Only messages with the type, the length and the strings of the first one are included. The second result
-    is their indices in ``messages``; it is empty if the type has sequences.
-
-    Raises:
-        InvalidFieldError: the first one cannot be decoded, as by `decode_without_ros`.
+    is their indices in ``messages``; it is empty if the type has sequences. The errors are those of
+    `decode_without_ros` for the first one.
     """
     first = messages[0]
     one, order, at = decode_without_ros(first), _CDR[first.data[1]], _HEAD

@@ -69,8 +69,7 @@ def ament_prefixes() -> tuple[Path, ...]:
 def find_definition(type_name: str, *, prefixes: Sequence[Path] | None = None) -> TypeDefinition:
     """Return the definition of ``package/msg/Name`` or ``package/srv/Name_Event``.
 
-    Raises:
-        InvalidFieldError: the name has another form, or no prefix has the type or a type that it uses.
+    Raise `InvalidFieldError` if the name has another form, or no prefix has the type or a type that it uses.
     """
     match = _TYPE_NAME.fullmatch(type_name)
     if match is None or (match[2] == "srv") != (match[4] is not None):

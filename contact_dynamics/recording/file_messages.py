@@ -26,8 +26,8 @@ if TYPE_CHECKING:
 class Topic(NamedTuple):
     """A topic of a log."""
 
-    name: str  # its name
-    type_name: str  # its type, "package/msg/Name" or "package/srv/Name_Event"
+    name: str
+    type_name: str  # "package/msg/Name" or "package/srv/Name_Event"
     definition: str  # the type definition, empty unless its encoding is MCAP's ros2msg
     # The YAML list of the QoS that its publishers offered, for `bag_metadata.offered_qos`, or an empty text
     qos: str = ""
@@ -44,10 +44,10 @@ class StoredMessage(NamedTuple):
 
 
 class Span(NamedTuple):
-    """A stretch of log times, ns since the epoch, by default all of them."""
+    """A range of log times, ns since the epoch, by default all of them."""
 
-    start_ns: int = -(2**63)  # the first time within it
-    end_ns: int = 2**63 - 1  # the first time after it, or the end of time
+    start_ns: int = -(2**63)  # the first time in it
+    end_ns: int = 2**63 - 1  # the first time after it
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -73,7 +73,7 @@ class Loss:
 
 
 MAGICS: Final = {b"\x28\xb5\x2f\xfd": b"zstd", b"\x04\x22\x4d\x18": b"lz4"}
-"""The first bytes of packed data, and MCAP's name of the packing."""
+"""The first bytes of compressed data, and MCAP's name of the compression."""
 
 SUFFIXES: Final = (".zstd", ".zst", ".lz4")  # suffixes of compressed files
 MAX_BYTES: Final = 64 * 1024 * 1024  # the size of the largest message that is decompressed, bytes
@@ -83,9 +83,8 @@ _PIECE: Final = 1024 * 1024  # bytes
 def uncompressed(compression: bytes, data: bytes, size: int) -> bytes:
     """Return the decompressed data. Decompression stops soon after ``size`` bytes.
 
-    Raises:
-        ValueError: MCAP does not define this compression.
-        Exception: the data are damaged. The class is that of the decompression library.
+    Raise `ValueError` if MCAP does not define this compression, or an error of the decompression library if
+    the data are damaged.
     """
     if compression == b"":
         return data
@@ -99,11 +98,7 @@ def uncompressed(compression: bytes, data: bytes, size: int) -> bytes:
 
 
 def unpacked_message(data: bytes) -> bytes:
-    """Return a message as it was serialised.
-
-    Raises:
-        InvalidFieldError: the message is damaged, or larger than `MAX_BYTES`.
-    """
+    """Return a message as it was serialised, or raise `InvalidFieldError` if it is damaged or too large."""
     compression = MAGICS.get(data[:4])
     if compression is None:
         return data

@@ -55,11 +55,7 @@ class McapMessages:
         self._path = path
 
     def __enter__(self) -> Self:
-        """Open the file.
-
-        Raises:
-            NotALogError: it does not begin as an MCAP file.
-        """
+        """Open the file, or raise `NotALogError` if it does not begin as an MCAP file."""
         self._stream = self._path.open("rb")
         try:
             self._walk = McapWalk(McapFile(self._path, self._stream, self._path.stat().st_size))
@@ -195,8 +191,7 @@ class McapWalk:
     def __init__(self, file: McapFile) -> None:
         """Start at the head of the file.
 
-        Raises:
-            NotALogError: it does not begin as an MCAP file. One damaged byte is allowed.
+        Raise `NotALogError` if it does not begin as an MCAP file. One damaged byte is allowed.
         """
         self._file = file
         self._losses: list[Loss] = []
@@ -283,11 +278,11 @@ class McapWalk:
         return self._summary
 
     def lose_undefined(self, count: int) -> None:
-        """Note that messages are lost because no intact record defines their channel."""
+        """Add the loss of messages whose channel no intact record defines."""
         self._lose(0, self._file.size, "what defines their channels is lost", messages=count)
 
     def lose_run(self) -> None:
-        """Note that the record of the run is damaged."""
+        """Add the loss of the record of the run, which is damaged."""
         self._lose(0, self._file.size, "the record of how the run was made fails its checksum", messages=0)
 
     def _lose(self, begin: int, end: int, reason: str, messages: int | None = None) -> None:

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Turns logged bytes into message objects: of ROS's classes, or of classes made from the log's definitions.
+"""Converts logged bytes to message objects: of ROS's classes, or of classes made from the log's definitions.
 
-The latter need no ROS. A log contains the full text of each type (`definitions`), from which a class with the
-fields, defaults and constants of the type is made. Code that reads ROS messages can read its objects too.
+The latter require no ROS. A log contains the full text of each type (`definitions`), from which a class with
+the fields, defaults and constants of the type is made. Code that reads ROS messages can read its objects too.
 
 Not covered: texts in encodings other than MCAP's ros2msg; wide strings.
 """
@@ -64,7 +64,7 @@ class Message:
     TYPES: ClassVar[dict[str, type[Message]]] = {}
 
     def __init__(self, **values: Any) -> None:
-        """Give each field its value, or its default."""
+        """Set each field to its value, or to its default."""
         for each in self.FIELDS:
             setattr(self, each.name, values[each.name] if each.name in values else self.empty(each))
 
@@ -99,11 +99,8 @@ PYTHON_TYPES: Final = {  # the Python type of each of `PRIMITIVES`
 def message_types(type_name: str, definition: str) -> dict[str, type[Message]]:
     """Return the classes of a type and of all its nested types, by "package/Name".
 
-    The ``definition`` is its text in MCAP's ros2msg form.
-
-    Raises:
-        InvalidFieldError: a line of the text is not valid in a message definition, or a type that it uses is
-            missing.
+    The ``definition`` is its text in MCAP's ros2msg form. Raise `InvalidFieldError` if a line of it is not
+    valid, or a type that it uses is missing.
     """
     package, _, name = type_name.partition("/")[0], "", type_name.rpartition("/")[2]
     first, *others = _HEADING.split(definition)
@@ -187,8 +184,7 @@ def _value(text: str, type_name: str) -> Any:
 def message_class(type_name: str) -> Any:
     """Return the class of ``package/msg/Name``, or the event class of ``package/srv/Name_Event``.
 
-    Raises:
-        InvalidFieldError: the name has another form, or its package is not installed.
+    Raise `InvalidFieldError` if the name has another form, or its package is not installed.
     """
     try:
         package, folder, name = type_name.split("/")

@@ -41,11 +41,7 @@ class SqliteMessages:
         self.losses: list[Loss] = []
 
     def __enter__(self) -> Self:
-        """Open the file.
-
-        Raises:
-            NotALogError: the file is not a database of rosbag2.
-        """
+        """Open the file, or raise `NotALogError` if it is not a database of rosbag2."""
         with self._path.open("rb") as stream:
             if stream.read(len(_HEADER)) != _HEADER:
                 raise NotALogError(f"{self._path} is not an SQLite file")
