@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Reads what requests of several services share: the body and its state, contacts, laws, numbers.
+"""Reads the common parts of the requests of several services: body, state, contacts, laws and numbers.
 
-A body is named, or described by an inertia, or both. Its state stands in the request, or was published. A
-number with its field's default (`LEFT_OUT`) is left out. A value in a field that has no effect, such as a
-horizon if the contacts are given, is an error (`rejected_fields`).
+A body is named, or described by an inertia, or both. Its state is in the request, or a published one. A
+number with its field's default (`LEFT_OUT`) is left out. A value in a field without effect, such as a horizon
+for given contacts, is an error (`rejected_fields`).
 """
 
 from __future__ import annotations
@@ -48,7 +48,7 @@ if TYPE_CHECKING:
     from contact_dynamics_interfaces.srv import PredictBodiesContactMode, PredictImpact
 
 LEFT_OUT: Final = -1
-"""The default of a number that a request may leave out. No such number may be negative, and zero is zero."""
+"""The default of an optional number in a request. Such numbers are never negative."""
 
 NOTHING: Final = np.zeros(3)  # no force, no torque or no gravity
 
@@ -74,12 +74,12 @@ class GravityRequest(Protocol):
 
 
 def optional(number: Number) -> Number | None:
-    """Return the number of a field that may be left out, or None if it is: its default is then `LEFT_OUT`."""
+    """Return the number of an optional field, or None if it has its default `LEFT_OUT`."""
     return None if number == LEFT_OUT else number
 
 
 def asked_contacts(request: ContactRequest) -> ContactSet | None:
-    """Return the contacts of a request, or None if they are to be found from geometry."""
+    """Return the contacts of a request, or None if they are detected."""
     if request.contact_source == request.CONTACTS_EXPLICIT:
         return contacts_from_msg(request.contacts)
     if request.contact_source == request.CONTACTS_FROM_GEOMETRY:
@@ -90,7 +90,7 @@ def asked_contacts(request: ContactRequest) -> ContactSet | None:
 
 
 def asked_gravity(request: GravityRequest) -> FloatArray | None:
-    """Return the acceleration of gravity that a request asks for, or None for the configured one."""
+    """Return the acceleration of gravity in a request, or None for the configured one."""
     if request.gravity == request.GRAVITY_AS_CONFIGURED:
         return None
     if request.gravity == request.GRAVITY_NONE:
@@ -104,7 +104,7 @@ def asked_problem(value: int) -> Problem:
 
 
 def asked_plane(normal: Vector3) -> PlaneOfMotion | None:
-    """Return the plane of motion of a request, or None if the best fitting plane is to be found."""
+    """Return the plane of motion of a request, or None for the best fitting plane."""
     if not any((normal.x, normal.y, normal.z)):
         return None
     try:
@@ -114,7 +114,7 @@ def asked_plane(normal: Vector3) -> PlaneOfMotion | None:
 
 
 def asked_member(field: str, kind: type[Member], value: int, *others: str) -> Member:
-    """Return the member of a request's number, or raise an error that lists all, with the words of others."""
+    """Return the member of a number, or raise an error that lists all members and the ``others``."""
     try:
         return kind(value)
     except ValueError:
@@ -122,11 +122,11 @@ def asked_member(field: str, kind: type[Member], value: int, *others: str) -> Me
         raise InvalidFieldError(field, value, allowed) from None
 
 
-_REMEMBERED: Final = 16  # described bodies that are kept, since a client sends an inertia with every request
+_REMEMBERED: Final = 16  # number of cached bodies, since a client sends an inertia with every request
 
 
 class _SubjectRequest(Protocol):
-    """The fields about the body, which the requests of all services have."""
+    """The fields about the body in the requests of all services."""
 
     STATE_NEWEST: int
     STATE_EXPLICIT: int
@@ -141,10 +141,9 @@ class _SubjectRequest(Protocol):
 def asked_subject(
     request: _SubjectRequest, world: World, world_frame: str, *, fit_window: float = 0.0
 ) -> tuple[Body, StateSource]:
-    """Return the body that a request names or describes, and where its state comes from.
+    """Return the body of a request, and the source of its state.
 
-    Raises:
-        ContactDynamicsError: the body is not known, or a field about the state holds what is not allowed.
+    Raise `ContactDynamicsError` if the body is unknown, or a field about the state is not allowed.
     """
     stamp_ns = _stamp_ns(request)
     body = asked_body(request.body_name, request.inertia, world)
@@ -156,10 +155,9 @@ def asked_subject(
 def asked_subjects(
     request: PredictBodiesContactMode.Request, world: World, world_frame: str
 ) -> tuple[tuple[Body, ...], tuple[StateSource, ...]]:
-    """Return the bodies that a request names or describes, and where the state of each comes from.
+    """Return the bodies of a request, and the sources of their states.
 
-    Raises:
-        ContactDynamicsError: as in `asked_subject`, or two bodies have one name, or lists differ in length.
+    The errors are those of `asked_subject`, and of bodies with the same name and lists of different lengths.
     """
     stamp_ns, count = _stamp_ns(request), len(request.states)
     for field in ("inertias", "applied_wrenches"):
@@ -187,7 +185,7 @@ def asked_subjects(
 def asked_other(
     request: PredictImpact.Request, world: World, world_frame: str
 ) -> tuple[Body | None, StateSource]:
-    """Return the second body of an impact, or None if the world is struck, and where its state comes from."""
+    """Return the second body of an impact, or None for one with the world, and the source of its state."""
     explicit = request.other_state[0] if request.other_state else None
     if not request.other_body_name and explicit is None and not _is_described(request.other_inertia):
         return None, NEWEST
@@ -198,7 +196,7 @@ def asked_other(
 
 
 def _explicit(field: str, msg: BodyStateMsg, body: Body, world_frame: str) -> KnownState:
-    """Return a state that a request has. If it names a body, that is the body of the request."""
+    """Return the state in a request, which may repeat the name of the request's body."""
     if body.name and msg.body_name not in {"", body.name}:
         raise InvalidFieldError(f"{field}.body_name", repr(msg.body_name), f"{body.name!r}, or left out")
     return known_state_from_msg(msg, world_frame=world_frame, p_FB_F=body.p_FB_F, field=field)
@@ -209,8 +207,7 @@ def asked_body(
 ) -> Body:
     """Return the body that a request names in one field, or describes in another.
 
-    Raises:
-        ContactDynamicsError: the name is not known or too long, or the numbers are no body's.
+    Raise `ContactDynamicsError` if the name is unknown or too long, or the numbers are invalid.
     """
     if len(name) > LONGEST_NAME:
         raise TooLargeError(field, f"{len(name)} characters", f"at most {LONGEST_NAME}")
@@ -231,21 +228,21 @@ def asked_body(
 
 @lru_cache(maxsize=_REMEMBERED)
 def _described_body(mass_properties: MassProperties, com: Vector, known: Body | None) -> Body:
-    """Return a body with the mass properties of a request, and any known body's name and shape."""
+    """Return a body with the mass properties of a request, and the name and shape of a known body."""
     if known is None:
         return Body(name="", mass_properties=mass_properties, p_FB_F=com)
     return changed_body(known, mass_properties, np.array(com))
 
 
 def _is_described(inertia: Inertia) -> bool:
-    """Whether a request says anything of a body's mass: one of mass zero with other numbers is none."""
+    """Return whether a request contains an inertia, possibly with mass zero, which is an error."""
     com = inertia.com
     numbers = (inertia.m, inertia.ixx, inertia.ixy, inertia.ixz, inertia.iyy, inertia.iyz, inertia.izz)
     return any(numbers) or any((com.x, com.y, com.z))
 
 
 def _stamp_ns(request: _SubjectRequest) -> int | None:
-    """Return the time of the published state that a request names, or None if it names none."""
+    """Return the stamp of the published state in a request, or None if it has none."""
     if request.state_source == request.STATE_AT_STAMP:
         return stamp_ns_from_msg(request.stamp)
     if request.state_source not in {request.STATE_NEWEST, request.STATE_EXPLICIT}:

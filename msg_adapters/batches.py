@@ -55,8 +55,7 @@ _STATE_FIELDS: Final = {
 def body_states_from_msg(msg: BodyStates, *, p_FB_F: FloatArray) -> ManyStates:
     """Return the states of a body whose centre of mass is at ``p_FB_F``, (3,), m, in its published frame.
 
-    Raises:
-        InvalidFieldError: the arrays have different lengths, or a number is not finite.
+    Raise `InvalidFieldError` if the arrays have different lengths, or a number is not finite.
     """
     q_WB = flat_rows("states.orientations", msg.orientations, 4)
     origins = flat_rows("states.positions", msg.positions, 3)
@@ -192,11 +191,7 @@ impacts_answer_from_msg: Final = _IMPACTS.answer_of
 def contact_modes_question_from_msg(
     request: PredictContactModeBatch.Request, *, world: World, world_frame: str
 ) -> ManyContactModesQuestion:
-    """Return the question of a `PredictContactModeBatch` request.
-
-    Raises:
-        ContactDynamicsError: a field holds what is not allowed, or names a body that is not known.
-    """
+    """Return the question of a `PredictContactModeBatch` request; see `tumbling_question_from_msg`."""
     forces = flat_rows("forces", request.forces, 3)
     torques = flat_rows("torques", request.torques, 3)
     none = np.zeros((max(len(forces), len(torques), 1), 3))

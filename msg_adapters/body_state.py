@@ -46,11 +46,8 @@ def body_state_from_msg(
 ) -> BodyState:
     """Return the state of the body whose centre of mass is at ``p_FB_F``, (3,), m, in its published frame.
 
-    Errors call the message ``field``.
-
-    Raises:
-        FrameMismatchError: `header.frame_id` is neither empty nor the world frame.
-        InvalidFieldError: a number is not finite, or the quaternion is not unit.
+    Errors call the message ``field``. Raise `FrameMismatchError` if `header.frame_id` is neither empty nor
+    the world frame, and `InvalidFieldError` if a number is not finite, or the quaternion is not unit.
     """
     check_frame(f"{field}.header.frame_id", msg.header.frame_id or world_frame, world_frame)
     kind: type = type(msg)
@@ -104,10 +101,9 @@ def body_state_to_msg(
 
 
 def center_of_mass(body_name: str, world: World) -> FloatArray:
-    """Return where a body's centre of mass is in its published frame, (3,), m.
+    """Return a body's centre of mass in its published frame, (3,), m, which messages do not contain.
 
-    Messages do not say it. If the world does not know the body, its centre of mass counts as that frame's
-    origin.
+    For a body that is not in the world, it is the origin of that frame.
     """
     known = (body.p_FB_F for body in world.bodies if body.name == body_name)
     return next(known, np.zeros(3))
@@ -118,10 +114,8 @@ def known_state_from_msg(
 ) -> KnownState:
     """Return the state, with its covariance if the message has one.
 
-    Raises:
-        InvalidFieldError: the covariance has another length than 144, or an error of `body_state_from_msg` or
-            `UncertainState`.
-        FrameMismatchError: as in `body_state_from_msg`.
+    The errors are those of `body_state_from_msg` and `UncertainState`, and `InvalidFieldError` for a
+    covariance of another length than 144.
     """
     state = body_state_from_msg(msg, world_frame=world_frame, p_FB_F=p_FB_F, field=field)
     if len(msg.covariance) == 0:

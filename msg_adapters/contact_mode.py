@@ -93,17 +93,11 @@ def asked_contact_modes(
     read_if: tuple[ReadIf, ...],
     **own: object,
 ) -> ContactModeQuestion:
-    """Return the question of what requests about one candidate and about many have in common.
+    """Return the question with the common fields of requests about one candidate and about many.
 
-    Args:
-        request: The request.
-        world: The bodies that it can name.
-        world_frame: The frame that an explicit state must be in.
-        read_if: The fields of it that are not always read.
-        own: Attributes of the question that only this request has.
-
-    Raises:
-        ContactDynamicsError: a field holds what is not allowed, or names a body that is not known.
+    ``read_if`` contains the fields that are not always read, and ``own`` further attributes of the question.
+    An explicit state must be in the world frame. Raise `ContactDynamicsError` if a field is not allowed, or
+    names an unknown body.
     """
     problem, contacts = asked_problem(request.problem), asked_contacts(request)
     gravity_W = asked_gravity(request)
@@ -126,17 +120,16 @@ def asked_contact_modes(
 
 
 def write_uncertainty(uncertainty: ContactUncertainty, msg: Side) -> None:
-    """Write how well contacts are known into a request or a response."""
+    """Write the uncertainty of contacts to a request or a response."""
     msg.uncertainty_points = _listed(uncertainty.points)
     msg.uncertainty_normals = _listed(uncertainty.normals)
     msg.uncertainty_frictions = _listed(uncertainty.frictions)
 
 
 def uncertainty_from_msg(msg: Side) -> ContactUncertainty:
-    """Return how well contacts are known. Without numbers they are known exactly.
+    """Return the uncertainty of contacts, which are exact without numbers.
 
-    Raises:
-        InvalidFieldError: a number is not allowed, or lists are of different counts of contacts.
+    Raise `InvalidFieldError` if a number is not allowed, or lists have different lengths.
     """
     if not (msg.uncertainty_points or msg.uncertainty_normals or msg.uncertainty_frictions):
         return EXACT_CONTACTS

@@ -30,10 +30,8 @@ _MOTION: Final = ("surface_velocities", "surface_angular_velocities", "surface_a
 def contacts_from_msg(msg: ContactSetMsg) -> ContactSet:
     """Return the contacts.
 
-    Raises:
-        InvalidFieldError: arrays have unequal lengths, curvatures are without the kind CURVED, or an error of
-            `ContactSet`.
-        TooLargeError: there are more than `MAX_CONTACTS` contacts.
+    Raise `InvalidFieldError` if arrays have unequal lengths, curvatures are without the kind CURVED, or the
+    contacts are invalid; `TooLargeError` if there are more than `MAX_CONTACTS`.
     """
     n = len(msg.frictions)
     if max(n, len(msg.positions) // 3, len(msg.normals) // 3) > MAX_CONTACTS:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Renames the fields in errors: messages and parameters have other names for them than the package."""
+"""Renames the fields in errors, since messages and parameters have other names for them than the package."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ FIELDS: Final = {
     "vertices_W": "vertices",
     "w_WB_W": "angular_velocity",
 }
-"""The fields of messages and parameters, by the arguments that the package makes of them."""
+"""The fields of messages and parameters, by the package's arguments."""
 
 CONTACT_FIELDS: Final = {
     "p_WC_W": "contacts.positions",
@@ -54,15 +54,15 @@ WRENCH_FIELDS: Final = {
     "force_W": "applied_wrench.force",
     "torque_W": "applied_wrench.torque",
 }
-"""The request's fields of a wrench, by those in the package."""
+"""The request's fields of a wrench, by the package's arguments."""
 
 Refused = TypeVar("Refused", bound=Exception)
 
 
 def renamed(error: Refused, names: Mapping[str, str] = FIELDS) -> Refused:
-    """Return the same error with other names of the fields in it; one that names no field comes back as is.
+    """Return the same error with other names of its fields, or the error itself if it has none of them.
 
-    Words before a field's name stay, as in "candidate 3: q_WB", and so does what follows it, as in "q_WB[3]".
+    Words around a field's name remain, as in "candidate 3: q_WB" and "q_WB[3]".
     """
     if not isinstance(error, InvalidFieldError):
         return error

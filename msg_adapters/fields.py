@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Tables of fields: a record is written into a message, and read back from it, row by row.
+"""Tables of fields, which write a record to a message and read it from one, row by row.
 
-A row names an attribute of the record, the field of the message, and the kind of both. So the two directions
-cannot disagree, and a new field of an answer takes one line.
+A row contains an attribute of the record, the field of the message, and the conversion in both directions.
+They therefore cannot disagree, and a new field of an answer takes one line.
 """
 
 from __future__ import annotations
@@ -38,7 +38,7 @@ class Frame(NamedTuple):
 
     p_FB_F: FloatArray = np.zeros(3)  # (3,), m, the body's centre of mass in its published frame
     world_frame: str = ""  # the name of the world frame, for writing
-    body_name: str = ""  # the name of the body
+    body_name: str = ""
     stamp_ns: int = 0  # the time from which trajectories count, ns, for writing
     answer: object = None  # the answer that contains the record, for writing
     world: World | None = None  # the bodies whose centres of mass are known, for reading
@@ -47,17 +47,15 @@ class Frame(NamedTuple):
 class Kind(NamedTuple):
     """A conversion between an attribute and a field that depends on the frame or on other fields."""
 
-    # Writes into a message, with the field, the attribute and the frame as arguments
-    write: Callable[..., object]
-    # Returns the attribute of a message, with the field and the frame as arguments
-    read: Callable[..., object]
+    write: Callable[..., object]  # arguments: message, field, attribute, frame
+    read: Callable[..., object]  # arguments: message, field, frame; returns the attribute
 
 
 class Converted(NamedTuple):
-    """A conversion between an attribute and a field. Without functions both are the same."""
+    """A conversion between an attribute and a field, which are equal without functions."""
 
-    to_field: Callable[..., object] | None = None  # converts an attribute to its field
-    from_field: Callable[..., object] | None = None  # converts a field to its attribute
+    to_field: Callable[..., object] | None = None
+    from_field: Callable[..., object] | None = None
 
 
 def _floats(numbers: Sequence[float]) -> FloatArray:
@@ -143,7 +141,7 @@ def rows_of(width: int) -> Converted:
 
 
 def one_of(members: type[IntEnum], *, none: int | None = None) -> Converted:
-    """Return the kind of a member of an enumeration. If ``none`` is given, that number stands for None."""
+    """Return the kind of a member of an enumeration. The number ``none``, if given, means None."""
     return Converted(
         lambda value: none if value is None else int(value),
         lambda number: None if number == none else members(number),
@@ -175,8 +173,8 @@ class Row(NamedTuple):
     """A row of a table."""
 
     name: str  # the attribute of the record
-    field: str  # The field of the message. A kind of several fields names them itself.
-    kind: Kind | Converted = SAME  # the conversion
+    field: str  # the field of the message, or empty if the kind contains several fields
+    kind: Kind | Converted = SAME
 
 
 Rec = TypeVar("Rec")
@@ -184,12 +182,12 @@ Msg = TypeVar("Msg")
 
 
 class Table(Generic[Rec, Msg]):
-    """The fields of a record, of which a message is made and that is made of a message."""
+    """The fields of a record and of its message."""
 
     def __init__(self, record: Callable[..., Rec], msg_type: Callable[[], Msg], *rows: Row) -> None:
-        """Take what makes the record of its attributes, what makes an empty message, and the rows.
+        """Set the functions that make the record of its attributes and an empty message, and the rows.
 
-        Rows that are converted by themselves go first, and then the others in their order.
+        Rows that depend on one field only are processed first, and then the others in their order.
         """
         self.record, self.msg_type = record, msg_type
         self._converted = [(name, field, *kind) for name, field, kind in rows if isinstance(kind, Converted)]
@@ -208,8 +206,7 @@ class Table(Generic[Rec, Msg]):
     def from_msg(self, msg: Msg, frame: Frame = Frame()) -> Rec:  # noqa: B008
         """Return the record of a message.
 
-        Raises:
-            InvalidFieldError: a number is not allowed, or arrays have unequal lengths.
+        Raise `InvalidFieldError` if a number is not allowed, or arrays have unequal lengths.
         """
         return self._read(msg, frame)
 
@@ -229,11 +226,8 @@ class Table(Generic[Rec, Msg]):
     ) -> Kind:
         """Return the kind of a record that is in the message of the row's field.
 
-        If that field is empty, the record shares the message of the other rows.
-
-        Args:
-            absent: Returns whether a message has no record, which is then None.
-            write_absent: Writes into a message that it has none.
+        If that field is empty, the record shares the message of the other rows. ``absent`` returns whether a
+        message has no record, which is then None, and ``write_absent`` writes such a message.
         """
 
         def write(msg: Msg, field: str, value: Rec | None, frame: Frame) -> None:
@@ -285,7 +279,7 @@ class Table(Generic[Rec, Msg]):
 
 
 class _NamedStates(Table[NamedState, BodyStateMsg]):
-    """A state with the name of its body, whose pose depends on the centre of mass of that body."""
+    """A state with the name of its body, whose centre of mass its pose depends on."""
 
     def to_msg(
         self,
@@ -322,7 +316,7 @@ _CENTER: Final = _in_frame("p_FB_F")
 
 
 class _OfBody(Protocol):
-    """What all answers have."""
+    """The attributes of all answers."""
 
     @property
     def body_name(self) -> str: ...
@@ -334,7 +328,7 @@ AnswerOfBody = TypeVar("AnswerOfBody", bound=_OfBody)
 
 
 class AnswerTable(Table[AnswerOfBody, Msg]):
-    """The fields of an answer to a service, of which its response is made."""
+    """The fields of an answer to a service and of its response."""
 
     def __init__(
         self,
@@ -343,9 +337,10 @@ class AnswerTable(Table[AnswerOfBody, Msg]):
         *rows: Row,
         body_name: str | None = "state.body_name",
     ) -> None:
-        """Take what makes the answer, an empty response, the rows, and the field with the body's name.
+        """Set the functions that make the answer and an empty response, and the rows.
 
-        If there is no such field, the rows have the bodies and their centres of mass.
+        The field with the body's name is ``body_name``. If it is None, the rows contain the bodies and their
+        centres of mass.
         """
         of_body = () if body_name is None else (_BODY_NAME, _CENTER)
         super().__init__(answer, response_type, *of_body, *rows)
@@ -363,10 +358,9 @@ class AnswerTable(Table[AnswerOfBody, Msg]):
         return self.to_msg(answer, frame, into=into)
 
     def answer_of(self, msg: Msg, *, world: World) -> AnswerOfBody:
-        """Return the answer that a response contains. ``world`` knows the bodies' centres of mass.
+        """Return the answer in a response. ``world`` contains the bodies' centres of mass.
 
-        Raises:
-            InvalidFieldError: a number is not allowed, or arrays have unequal lengths.
+        Raise `InvalidFieldError` if a number is not allowed, or arrays have unequal lengths.
         """
         name: str = self._body_name(msg)
         return self.from_msg(msg, Frame(p_FB_F=center_of_mass(name, world), body_name=name, world=world))
@@ -384,4 +378,4 @@ _FIT: Final = Table(
     Row("orientation_residual", "fit_orientation_residual"),
 )
 FIT: Final = _FIT.nested(lambda msg: msg.fit_count == 0, _write_no_fit)
-"""How good the fit was that the state came from, or None without a fit."""
+"""The quality of the fit that estimated the state, or None without a fit."""

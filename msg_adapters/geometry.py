@@ -52,8 +52,7 @@ def pose_to_msg(position: Iterable[float], orientation: Iterable[float]) -> Pose
 def mass_properties_from_msg(msg: Inertia) -> tuple[MassProperties, FloatArray]:
     """Return mass properties, and the centre of mass in the body's frame, (3,), m.
 
-    Raises:
-        InvalidFieldError: an error of `MassProperties`, or the centre of mass is not finite.
+    The errors are those of `MassProperties`, and `InvalidFieldError` if the centre of mass is not finite.
     """
     com = msg.com
     return _mass_properties(

@@ -40,9 +40,8 @@ if TYPE_CHECKING:
 def body_state_from_odometry(msg: Odometry, *, world_frame: str, p_FB_F: FloatArray) -> BodyState:
     """Return the state of the body whose centre of mass is at ``p_FB_F``, (3,), m, in the child frame.
 
-    Raises:
-        FrameMismatchError: `header.frame_id` is not the world frame.
-        InvalidFieldError: a number is not finite, or the quaternion is not unit.
+    Raise `FrameMismatchError` if `header.frame_id` is not the world frame, and `InvalidFieldError` if a
+    number is not finite, or the quaternion is not unit.
     """
     check_frame("header.frame_id", msg.header.frame_id, world_frame)
     q_WF = check_unit("pose.pose.orientation", quaternion_from_msg(msg.pose.pose.orientation), 4)
@@ -70,7 +69,7 @@ def _read(msg: Odometry, settings: SourceSettings) -> KnownState:
 
 
 def _rows(settings: SourceSettings, msg: Odometry) -> StateRows | None:
-    """Return what `_read` does, to the last bit, for messages in the world frame without covariances."""
+    """Return the results of `_read`, to the last bit, for messages in the world frame without covariances."""
     if msg.header.frame_id != settings.world_frame or msg.child_frame_id not in {"", settings.body_frame}:
         return None
     pose, twist, stamp = msg.pose.pose, msg.twist.twist, msg.header.stamp

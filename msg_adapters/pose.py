@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Converts poses alone to states, whose velocities come from the poses.
+"""Converts poses alone to states, with velocities that are estimated from the poses.
 
-They are poses of one body, with covariance or without; the frames of `tf2_msgs/TFMessage`; or those of all
-bodies that a motion capture sees, `mocap4r2_msgs/RigidBodies`. The packages of the last two are needed only
-where these sources are used.
+The messages contain poses of one body, with covariance or without; the frames of `tf2_msgs/TFMessage`; or the
+poses of all bodies in a motion capture system, `mocap4r2_msgs/RigidBodies`. The packages of the last two are
+required only for these sources.
 """
 
 from __future__ import annotations
@@ -34,8 +34,7 @@ if TYPE_CHECKING:
 def pose_in_world(header: Header, pose: Pose, settings: SourceSettings) -> FramePose:
     """Return a body's pose in the world.
 
-    Raises:
-        FrameMismatchError: the header's frame is not the world's, and no static transform leads to it.
+    Raise `FrameMismatchError` if the header's frame is not the world's, and no static transform leads to it.
     """
     found = FramePose(p=vector_from_msg(pose.position), q=quaternion_from_msg(pose.orientation))
     if header.frame_id == settings.world_frame:
@@ -50,14 +49,14 @@ def pose_in_world(header: Header, pose: Pose, settings: SourceSettings) -> Frame
 
 
 class RigidBody(Protocol):
-    """What is read of a `mocap4r2_msgs/RigidBody`."""
+    """The fields of `mocap4r2_msgs/RigidBody` that are read."""
 
     rigid_body_name: str
     pose: Pose
 
 
 class RigidBodies(Protocol):
-    """What is read of a `mocap4r2_msgs/RigidBodies`."""
+    """The fields of `mocap4r2_msgs/RigidBodies` that are read."""
 
     header: Header
     rigidbodies: Sequence[RigidBody]
@@ -78,17 +77,17 @@ class _Poses:
         return self._add(msg.header, msg.pose.pose, covariance_from_msg(msg.pose.covariance))
 
     def of_capture(self, msg: RigidBodies) -> KnownState | None:
-        """Take the body that is named as the frame is."""
+        """Read the body with the frame's name."""
         for body in msg.rigidbodies:
             if body.rigid_body_name == self._settings.body_frame:
                 return self._add(msg.header, body.pose)
         return None
 
     def of_transforms(self, msg: TFMessage) -> KnownState | None:
-        """Take the pose of the body's own frame, which moves.
+        """Read the pose of the body's own frame, which moves.
 
-        Frames between it and the world stand still (they come on the static topic), or are told with the same
-        stamp, before the body's frame or in the same message.
+        The transforms between it and the world are static (on the static topic), or have the same stamp and
+        arrive before the body's frame or in the same message.
         """
         frame = self._settings.body_frame
         self._tree.add(msg, is_static=False)

@@ -1,13 +1,13 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Converts poses alone to states: the velocities are found from the poses of a short window.
+"""Converts poses alone to states: the velocities are estimated from the poses in a short window.
 
 The filter is `motion.velocity_estimate`: a quadratic is fitted to each coordinate over the window, and its
 slope at the newest pose is the velocity. Its delay is zero while the acceleration is constant, as in flight.
-For 50 poses at 1 kHz with white noise sigma the velocity has the noise 38 sigma a second, for 12 poses at
-240 Hz it has 75 sigma a second (`slope_noise`). After an impact it is wrong until the window has passed.
+For 50 poses at 1 kHz with white noise sigma, the velocity has the noise 38 sigma per second; for 12 poses at
+240 Hz, 75 sigma per second (`slope_noise`). After an impact it is wrong until the window has passed.
 
-Not covered: a body that turns by nearly a whole turn, or by several, from every pose to the next. Its poses
-are those of one that turns slowly or backwards, and nothing in them shows it.
+Not covered: a body that turns by nearly a whole turn or more between poses. Its poses equal those of a body
+that turns slowly or backwards.
 """
 
 from __future__ import annotations
@@ -54,21 +54,17 @@ class PoseTrack:
     def add(
         self, p_WF: FloatArray, q_WF: FloatArray, *, stamp_ns: int, covariance: FloatArray | None = None
     ) -> KnownState | None:
-        """Take a pose and return the state at it, or None for the first poses and for one that comes late.
+        """Add a pose; return its state, or None for the first poses and for a late one.
 
-        `FEWEST_FRAMES` in turn that are behind the newest by more than `LONGEST_GAP` windows are not late:
-        the clock of who publishes was set back, or a simulation began anew. The poses before are forgotten.
+        The origin ``p_WF``, (3,), m, and the orientation ``q_WF``, (4,), x y z w, are those of the frame. The
+        noise of the poses is assumed independent, with the same ``covariance``, (6, 6), in ROS's order, or
+        unknown.
 
-        Args:
-            p_WF: (3,), m, the frame's origin.
-            q_WF: (4,), its orientation, x y z w.
-            stamp_ns: ns, its time.
-            covariance: (6, 6), of this pose in ROS's order, or None if it is not known. The noise of the
-                poses is taken to be independent, and that of each to be this.
+        After `FEWEST_FRAMES` successive poses that are behind the newest by more than `LONGEST_GAP` windows,
+        the publisher's clock was set back, or a simulation restarted. Earlier poses are then discarded.
 
-        Raises:
-            InvalidFieldError: a number is not finite, the quaternion is not unit, the body turns by half a
-                turn or more within the window, or it may have done so while poses were missing.
+        Raise `InvalidFieldError` if a number is not finite, the quaternion is not unit, the body turns by
+        half a turn or more within the window, or it may have done so while poses were missing.
         """
         pose = _Pose(
             stamp_ns, check_array("pose.position", p_WF, (3,)), check_unit("pose.orientation", q_WF, 4)

@@ -41,9 +41,9 @@ def body_state_from_pose_twist(
 ) -> BodyState:
     """Return the state of the body whose centre of mass is at ``p_FB_F``, (3,), m, in its published frame.
 
-    Raises:
-        FrameMismatchError: the pose is not in the world frame, or the twist in neither the world's nor the
-        body's. InvalidFieldError: the stamps differ, a number is not finite, or the quaternion is not unit.
+    Raise `FrameMismatchError` if the pose is not in the world frame, or the twist in neither the world's nor
+    the body's; `InvalidFieldError` if the stamps differ, a number is not finite, or the quaternion is not
+    unit.
     """
     check_frame("pose header.frame_id", pose.header.frame_id, world_frame)
     stamp_ns = stamp_ns_from_msg(pose.header.stamp)
@@ -127,31 +127,31 @@ First = TypeVar("First", bound=Stamped)
 Second = TypeVar("Second", bound=Stamped)
 
 MAX_UNPAIRED: Final = 100
-"""Messages that wait for the other one of their stamp. Then the other topic is silent, and the oldest go."""
+"""Number of messages that wait for a partner. Above it, the oldest are discarded."""
 
 
 class Pairs(Generic[First, Second]):
-    """Joins the two messages of one stamp that make a state together, whichever comes first."""
+    """Joins the two messages with the same stamp that form a state, in either order of arrival."""
 
     def __init__(self, join: Callable[[First, Second], KnownState]) -> None:
-        """Begin without messages; ``join`` makes a state of a message of each topic."""
+        """Begin without messages; ``join`` converts a message of each topic to a state."""
         self._join = join
         self._first: dict[int, First] = {}
         self._second: dict[int, Second] = {}
 
     def first(self, msg: First) -> KnownState | None:
-        """Take a message of the first topic."""
+        """Add a message of the first topic."""
         other = _partner(msg, self._first, self._second)
         return None if other is None else self._join(msg, other)
 
     def second(self, msg: Second) -> KnownState | None:
-        """Take a message of the second topic."""
+        """Add a message of the second topic."""
         other = _partner(msg, self._second, self._first)
         return None if other is None else self._join(other, msg)
 
 
 def _partner(msg: First, mine: dict[int, First], others: dict[int, Second]) -> Second | None:
-    """Return the message of the same stamp that waits, or let this one wait."""
+    """Return the waiting message with the same stamp, or store this one."""
     stamp_ns = stamp_ns_from_msg(msg.header.stamp)
     partner = others.pop(stamp_ns, None)
     if partner is None:

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Converts covariances of poses and twists, (6, 6) each as ROS publishes them, to that of a body's state.
+"""Converts ROS's covariances of poses and twists, (6, 6) each, to the covariance of a body's state.
 
-ROS's order is x y z, then the rotations about the fixed axes x y z of the header's frame. A twist's is that
-of its linear and angular velocity, in the axes that the twist is in. A covariance of zeros, or one whose
-first number is negative, means by custom that it is not known.
+ROS's order is x y z, then the rotations about the fixed axes x y z of the header's frame; for a twist, the
+linear and the angular velocity in the twist's axes. By convention, a covariance of zeros, or with a negative
+first number, is unknown.
 """
 
 from __future__ import annotations
@@ -25,13 +25,13 @@ if TYPE_CHECKING:
 
 
 def covariance_from_msg(numbers: Sequence[float]) -> FloatArray | None:
-    """Return a covariance, (6, 6), or None if the message does not tell one."""
+    """Return a covariance, (6, 6), or None if it is unknown."""
     covariance = np.array(numbers, dtype=np.float64).reshape(6, 6)
     return covariance if covariance[0, 0] >= 0.0 and covariance.any() else None
 
 
 def of_pose_and_twist(pose: FloatArray | None, twist: FloatArray | None) -> FloatArray | None:
-    """Return the covariance of both, (12, 12), as if they were independent; None if one is not known."""
+    """Return the joint covariance of independent errors, (12, 12), or None if one is unknown."""
     if pose is None or twist is None:
         return None
     both = np.zeros((12, 12))
@@ -42,16 +42,12 @@ def of_pose_and_twist(pose: FloatArray | None, twist: FloatArray | None) -> Floa
 def with_covariance(
     state: BodyState, covariance_F: FloatArray | None, p_FB_F: FloatArray, *, twist_in_body_axes: bool
 ) -> KnownState:
-    """Return a state with its covariance, or without it if that is not known or is no covariance.
+    """Return a state with its covariance, or without it if that is unknown or invalid.
 
-    Many sensors publish numbers that are no covariance. Their states count all the same.
-
-    Args:
-        state: The state of the centre of mass.
-        covariance_F: (12, 12), of the published pose, then of the published twist.
-        p_FB_F: (3,), m, the centre of mass in the published frame F.
-        twist_in_body_axes: Whether the published twist is in the axes of the body. An error of the
-            orientation then turns the velocities too. Otherwise it is in the world's axes.
+    Many sensors publish invalid covariances, and their states are used nevertheless. ``covariance_F``, (12,
+    12), is that of the published pose and twist; ``p_FB_F``, (3,), m, is the centre of mass in the published
+    frame F. If the published twist is in the axes of the body instead of the world, an error of the
+    orientation turns the velocities too.
     """
     if covariance_F is None:
         return state

@@ -1,14 +1,14 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Rejects requests with values that their fields cannot have: unread ones, and numbers that rclpy mangled.
+"""Rejects requests with invalid values: those in fields that are not read, and numbers that rclpy corrupted.
 
-An explicit state with the flag of the newest one, or a plane's normal for a problem in space, would otherwise
-be ignored, and the answer would be that to another question. Each table has the fields of a service that are
-read under some condition only. All other fields of its request are always read. A field has no value if it is
-at the default of its message.
+An explicit state with the flag of the newest one, or a plane's normal for a spatial problem, would otherwise
+be ignored, and the response would be to another question. Each table has the fields of a service that are
+read only under a condition. All other fields of its request are always read. A field has no value if it has
+its default.
 
-Without ROS_PYTHON_CHECK_FIELDS=1, rclpy checks no types. Of an int or a ``numpy.float32`` in a float64 field
-it sends the wrong bytes: a number just above zero, or NaN. A question with such a number would have a wrong
-answer. Numbers in lists are safe, because rclpy converts those, and are looked at nevertheless.
+Without ROS_PYTHON_CHECK_FIELDS=1, rclpy checks no types. For an int or a ``numpy.float32`` in a float64
+field, it sends the wrong bytes: a number just above zero, or NaN. The response to such a request would be
+wrong. rclpy converts numbers in lists correctly, but they are checked too.
 """
 
 from __future__ import annotations
@@ -35,8 +35,8 @@ Value = TypeVar("Value")
 class When(NamedTuple):
     """A condition on one field of a request."""
 
-    field: str  # the field, which may be one of a message in the request
-    # Names of constants of the request, one of which the field has. Without any, the field is not zero.
+    field: str  # may be a field of a message in the request
+    # Names of constants of the request, one of which is the field's value. Without any, it is not zero.
     constants: tuple[str, ...] = ()
     is_zero: bool = False  # whether the field must be zero instead
 
@@ -49,7 +49,7 @@ class When(NamedTuple):
         )
 
     def words(self, request: object) -> str:
-        """Return the condition in words."""
+        """Return the condition as text."""
         if self.constants:
             return f"{self.field} is " + _either(
                 [f"{name} ({getattr(request, name)})" for name in self.constants]
@@ -59,7 +59,7 @@ class When(NamedTuple):
         return f"{self.field} is {(of_flags if isinstance(value, bool) else of_numbers)[self.is_zero]}"
 
     def remedy(self, request: object) -> str:
-        """Return what to set so that a request meets the condition, or nothing if no one value does."""
+        """Return a text with a value that meets the condition, or an empty text if no single value does."""
         if self.constants:
             return f"set {self.field}: {getattr(request, self.constants[0])} to use it"
         value: object = attrgetter(self.field)(request)
@@ -101,8 +101,8 @@ _Row: TypeAlias = tuple[
 ]
 
 _ROWS: Final[dict[tuple[type, int], tuple[tuple[ReadIf, ...], list[_Row]]]] = {}
-"""The rows of tables for types of requests, with a function that reads all fields of a row, and what it
-returns of an empty request. The table is kept because its `id` is part of the key."""
+"""The rows of tables for types of requests, with a function that reads all fields of a row, and its result
+for an empty request. The table is stored because its `id` is part of the key."""
 
 
 def _rows(request_type: type, table: tuple[ReadIf, ...]) -> tuple[tuple[ReadIf, ...], list[_Row]]:
@@ -136,8 +136,8 @@ def _leaves(request: object, *fields: str) -> tuple[_Leaf, ...]:
 def values_of(message: type, paths: Sequence[str]) -> Callable[[object], tuple[Value, ...]]:
     """Return a function that returns the values of fields of a message, and then its class twice.
 
-    It reads the slots of messages made by ROS, whose properties take five times as long. The class is there
-    since a getter of one value would return no tuple.
+    It reads the slots of ROS's messages, whose properties take five times as long. With the class, the result
+    is a tuple even for a single field.
     """
     is_ros = hasattr(message, "get_fields_and_field_types")
     slots = ["_" + path.replace(".", "._") for path in paths] if is_ros else paths
@@ -145,7 +145,7 @@ def values_of(message: type, paths: Sequence[str]) -> Callable[[object], tuple[V
 
 
 def leaves_of(path: str, default: object) -> Iterator[_Leaf]:
-    """Yield the leaves of a field of a message, which is at that path and has that default."""
+    """Yield the leaves of a field of a message, with its path and default."""
     names = field_names(default)
     if not names:
         yield _Leaf(path, attrgetter(path), default)
@@ -154,7 +154,7 @@ def leaves_of(path: str, default: object) -> Iterator[_Leaf]:
 
 
 def field_names(value: object) -> Sequence[str]:
-    """Return the names of the fields of a message. A value that is none has no fields."""
+    """Return the names of the fields of a message, or none for any other value."""
     if hasattr(value, "get_fields_and_field_types"):  # made by ROS; others are made from a log's texts
         return tuple(value.get_fields_and_field_types())
     return tuple(field.name for field in getattr(value, "FIELDS", ()))
@@ -259,7 +259,6 @@ HINT: Final = (
     "rclpy sends this for an int or a numpy.float32: write 2.0 or float(x), or set "
     "ROS_PYTHON_CHECK_FIELDS=1, so that it raises an error"
 )
-"""What to do about such a number."""
 
 _FEW: Final = 20  # length of a list up to which Python is faster than NumPy
 
@@ -267,16 +266,16 @@ _NAN: Final = re.compile(r"(?<![\w'])nan(?![\w'])")
 
 
 def check_numbers(message: object) -> None:
-    """Raise `InvalidFieldError` for the first number of a message that rclpy has mangled, and name the field.
+    """Raise `InvalidFieldError` for the first number of a message that rclpy corrupted, and name the field.
 
-    Such a number is positive and below `tolerances.MANGLED`. NaN is left to whoever reads the field.
+    Such a number is positive and below `tolerances.MANGLED`. NaN is checked where the field is read.
     """
     for path, number in _mangled(message):
         raise InvalidFieldError(path, number, "a number of normal size", hint=HINT)
 
 
 def in_fields(error: Refused) -> Refused:
-    """Return an error in the words of messages: by their fields, and with a hint where one helps."""
+    """Return an error with the fields' names in messages, and a hint where one helps."""
     told = renamed(error, FIELDS)
     if not isinstance(told, InvalidFieldError) or told.hint:
         return told
@@ -289,7 +288,7 @@ def in_fields(error: Refused) -> Refused:
 
 
 def _mangled(message: object) -> Iterator[tuple[str, float]]:
-    """Yield the numbers of a message that are mangled, by their fields."""
+    """Yield the corrupted numbers of a message, with their fields."""
     plan = _plan(type(message))
     numbers = plan.numbers(message)
     for index in _mangled_among(numbers[: len(plan.number_paths)]):
@@ -306,7 +305,7 @@ def _mangled(message: object) -> Iterator[tuple[str, float]]:
 
 
 def _mangled_among(numbers: Sequence[float]) -> Sequence[int]:
-    """Return the indices of the mangled numbers."""
+    """Return the indices of the corrupted numbers."""
     if len(numbers) > _FEW and not isinstance(numbers, tuple):
         array = np.asarray(numbers)
         found: list[int] = ((array > 0.0) & (array < MANGLED)).nonzero()[0].tolist()
@@ -318,7 +317,7 @@ def _mangled_among(numbers: Sequence[float]) -> Sequence[int]:
 
 
 class _Plan(NamedTuple):
-    """The fields of a type of messages that are looked at, and functions that return all of their values."""
+    """The fields of a type of messages that are checked, and functions that return all of their values."""
 
     number_paths: tuple[str, ...]
     numbers: Callable[[object], tuple[float, ...]]

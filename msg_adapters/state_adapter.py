@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What a source of published states is: which messages it takes, and how states come of them.
+"""The definition of a source of published states: its messages, and their conversion to states.
 
-Each source has a file here with its adapter. An adapter of one's own is an object of this kind that an entry
-point of the group `contact_dynamics.state_sources` names.
+Each source has a file here with its adapter. Other packages provide an adapter as an object of this kind, by
+an entry point of the group `contact_dynamics.state_sources`.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from contact_dynamics.validation import FloatArray
 
 Reader: TypeAlias = "Callable[[Any], KnownState | None]"
-"""Makes a state of a message, or None if another message must complete it."""
+"""Converts a message to a state, or to None if another message must complete it."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -48,10 +48,9 @@ class SourceSettings:
 
 
 def in_world(known: KnownState, frame: str, settings: SourceSettings) -> KnownState:
-    """Return a state that is given in a frame, the header's, as one in the world frame.
+    """Return a state in the world frame, given in the header's frame.
 
-    Raises:
-        FrameMismatchError: it is not the world frame, and no static transform leads from it to the world.
+    Raise `FrameMismatchError` if no static transform leads from that frame to the world.
     """
     if frame == settings.world_frame:
         return known
@@ -79,13 +78,12 @@ class StateRows(NamedTuple):
 
     stamps_ns: NDArray[np.int64]  # (n,), ns
     numbers: FloatArray  # (n, 13): position, quaternion, linear and angular velocity, as in `BodyState`
-    # (n,), whether a row is all that the reader makes of the message. It is false where that has a covariance
-    # too, and where the reader raises an error.
+    # (n,), whether the row equals the result of the reader, which may also be a covariance or an error
     are_all: NDArray[np.bool_]
 
 
 RowsReader: TypeAlias = "Callable[[SourceSettings, Any], StateRows | None]"
-"""Makes the states of many messages, which `decode_columns` made one of, or None if they need a reader."""
+"""Converts the joined messages of `decode_columns` to states, or to None if they require a reader."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

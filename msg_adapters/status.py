@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Converts errors to the status codes of the services. Equal offsets in their ranges mean the same."""
+"""Converts errors to the status codes of services. Equal offsets in their ranges have the same meaning."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ _CODE_NAMES: Final[tuple[tuple[type[errors.ContactDynamicsError], str], ...]] = 
 
 
 MAX_SAID: Final = 2000
-"""Letters of a message about an error. It quotes what was found, which may be a name of any length."""
+"""Largest length of an error's message, which may quote a name of any length."""
 
 
 _SHAPE_HINT: Final = (
@@ -51,7 +51,7 @@ class Response(Protocol):
 
 
 def short(message: str) -> str:
-    """Return a message without its middle, if it is too long to be read."""
+    """Return a message without its middle if it is too long to read."""
     half = MAX_SAID // 2
     return message if len(message) <= MAX_SAID else f"{message[:half]} ... {message[-half:]}"
 
@@ -60,24 +60,24 @@ _WARNING: Final = "warning: "
 
 
 def with_warnings(text: str, warnings: Sequence[str]) -> str:
-    """Return the message of an answer: what it says by itself, then a line for each warning."""
+    """Return the message of a response: its own text, then a line for each warning."""
     return "\n".join([*([text] if text else []), *(_WARNING + one for one in warnings)])
 
 
 def without_warnings(message: str) -> tuple[str, tuple[str, ...]]:
-    """Return what an answer says by itself, and its warnings."""
+    """Return the own text of a response's message, and its warnings."""
     lines = message.splitlines()
     warnings = tuple(line.removeprefix(_WARNING) for line in lines if line.startswith(_WARNING))
     return "\n".join(line for line in lines if not line.startswith(_WARNING)), warnings
 
 
 def code_name(error: Exception) -> str:
-    """Return the name of the code that says what is wrong; a service without it has a wider one instead."""
+    """Return the name of the status code of an error. A service without it has a wider one instead."""
     return next((name for kind, name in _CODE_NAMES if isinstance(error, kind)), "INTERNAL_ERROR")
 
 
 def report_error(response: Response, error: Exception) -> None:
-    """Write an error into a response, as its code and a message with what was found and what is allowed."""
+    """Write the status code and the message of an error to a response."""
     error = in_fields(error)
     if hasattr(response, "event_time"):
         response.event_time = math.nan  # there is no event; interfaces cannot have it as a default

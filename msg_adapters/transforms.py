@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Reads the tree of frames that `tf2_msgs/TFMessage` describes, and finds a frame's pose in another one.
+"""Reads the tree of frames in `tf2_msgs/TFMessage`, and returns the pose of a frame in another one.
 
-Each transform says where a child frame is in its parent. A frame's pose in another frame is found by going up
-from both to the frame that they share. Nothing is interpolated: a link that moves counts only at its own
-stamp. `tf2` itself interpolates. It has no wheel for Python, and its buffer of all frames over time is more
-than is needed here.
+Each transform is the pose of a child frame in its parent. The pose of a frame in another one follows from the
+paths of both to their common ancestor. There is no interpolation: a moving link is valid only at its own
+stamp. `tf2` interpolates, but has no wheel for Python, and its buffer of all frames over time is not required
+here.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 
 
 class TFMessage(Protocol):
-    """What `tf2_msgs/TFMessage` has. The package is needed only where such a source is used."""
+    """The fields of `tf2_msgs/TFMessage`. The package is required only for such a source."""
 
     transforms: Sequence[TransformStamped]
 
@@ -48,13 +48,13 @@ class FramePose:
         return rotation_matrix(self.q)
 
     def of(self, inner: FramePose) -> FramePose:
-        """Return where a frame is in the outer frame, if it is at ``inner`` in this one."""
+        """Return the pose of a frame in the outer frame, from its pose ``inner`` in this one."""
         q = _quaternion(self.q)
         turned = np.array(rotated(q, inner.p.tolist()))
         return FramePose(p=self.p + turned, q=np.array(product(q, _quaternion(inner.q))))
 
     def inverse(self) -> FramePose:
-        """Return where the other frame is in this one."""
+        """Return the pose of the other frame in this one."""
         back = conjugate(_quaternion(self.q))
         return FramePose(p=-np.array(rotated(back, self.p.tolist())), q=np.array(back))
 
@@ -73,32 +73,30 @@ class TransformTree:
     """The newest transform of each frame."""
 
     def __init__(self, static: TransformTree | None = None) -> None:
-        """Begin without links of its own; those of ``static`` count too, also later ones."""
+        """Begin without links of its own. Present and later links of ``static`` are included."""
         self._links: dict[str, _Link] = {}
         self._static = static
 
     def add(self, msg: TFMessage, *, is_static: bool) -> None:
-        """Take all transforms of a message.
+        """Add all transforms of a message.
 
-        Raises:
-            InvalidFieldError: a frame has no name, a number is not finite, or a quaternion is not unit. What
-                came before it in the message is taken.
+        Raise `InvalidFieldError` if a frame has no name, a number is not finite, or a quaternion is not unit.
+        Earlier transforms of the message are added.
         """
         for i, transform in enumerate(msg.transforms):
             link = _link_from_msg(transform, f"transforms[{i}]", is_static=is_static)
             self._links[transform.child_frame_id] = link
 
     def stamp_ns(self, frame: str) -> int | None:
-        """Return the time of the newest transform of a frame that moves, or None if there is none."""
+        """Return the time of the latest transform of a moving frame, or None if there is none."""
         link = self._links.get(frame)
         return None if link is None else link.stamp_ns
 
     def pose(self, frame: str, *, in_frame: str, stamp_ns: int, field: str) -> FramePose:
-        """Return where a frame is in another one at a time, ns.
+        """Return the pose of a frame in another one at a time, ns.
 
-        Raises:
-            FrameMismatchError: no transforms lead from one to the other, or one of them moves and is of
-                another time. ``field`` is the message's field with the frame's name, for the error.
+        Raise `FrameMismatchError` if no transforms connect them, or a moving one has another stamp. The error
+        is about ``field``, the message's field with the frame's name.
         """
         to_frame, to_other = dict(self._up(frame)), dict(self._up(in_frame))
         for shared, inner in to_frame.items():

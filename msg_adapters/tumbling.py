@@ -57,15 +57,10 @@ if TYPE_CHECKING:
 def tumbling_question_from_msg(
     request: PredictTumbling.Request, *, world: World, world_frame: str
 ) -> TumblingQuestion:
-    """Return the question of a `PredictTumbling` request.
+    """Return the question of a `PredictTumbling` request, which can name the bodies of the ``world``.
 
-    Args:
-        request: The request.
-        world: The bodies that it can name.
-        world_frame: The frame that an explicit state must be in.
-
-    Raises:
-        ContactDynamicsError: a field holds what is not allowed, or names a body that is not known.
+    An explicit state must be in ``world_frame``. Raise `ContactDynamicsError` if a field is not allowed, or
+    names an unknown body.
     """
     gravity_W, wrench, drag = asked_gravity(request), _wrench(request), _drag(request)
     body, state = asked_subject(request, world, world_frame, fit_window=request.fit_window)
@@ -114,7 +109,7 @@ def _drag(request: PredictTumbling.Request) -> Drag:
 
 
 def _sampling(request: PredictTumbling.Request) -> Sampling:
-    """Return the times that a request asks about, or raise `InvalidFieldError`."""
+    """Return the times of the samples, or raise `InvalidFieldError`."""
     if request.sampling == request.AT_TIMES:
         if len(request.times) == 0:
             raise InvalidFieldError(
@@ -191,11 +186,11 @@ COVARIANCES: Final = fields.Kind(_write_covariances, _read_covariances)
 """The covariances of a trajectory's samples, or None without them."""
 
 TRAJECTORY: Final = fields.Kind(_write_trajectory, _read_trajectory)
-"""A trajectory, whose times count from the frame's stamp."""
+"""A trajectory, whose times are relative to the frame's stamp."""
 
 
 def _write_torque(msg: PoinsotMsg) -> None:
-    """Write that a torque acts, so that there is no picture of Poinsot's."""
+    """Write that a torque acts, so that the motion has no Poinsot construction."""
     msg.regime = msg.UNKNOWN
     for field in (
         "rotational_energy",
@@ -210,7 +205,7 @@ def _write_torque(msg: PoinsotMsg) -> None:
 
 
 def _poinsot(rotational_energy: float, principal_moments: FloatArray, **others: object) -> Poinsot:
-    """Return Poinsot's picture, whose semi-axes are not in the message."""
+    """Return the Poinsot construction, whose semi-axes are not in the message."""
     return Poinsot(
         rotational_energy=rotational_energy,
         principal_moments=principal_moments,
@@ -236,7 +231,7 @@ POINSOT: Final = fields.Table(
     fields.Row("principal_axes_B", "principal_axes", fields.Converted(np.ravel, rows)),
     fields.Row("sensitivity", "sensitivity"),
 ).nested(_is_torque, _write_torque)
-"""Poinsot's picture of a motion, or None if a torque acts."""
+"""The Poinsot construction of a motion, or None if a torque acts."""
 
 FLIPS: Final = fields.Table(
     Flips,
@@ -244,7 +239,7 @@ FLIPS: Final = fields.Table(
     fields.Row("seconds", "flip_times", fields.NUMBERS),
     fields.Row("deviations", "flip_time_deviations", fields.NUMBERS),
 ).nested(_is_torque)
-"""The next flips of the middle axis, of which there may be none, or None if a torque acts."""
+"""The next flips of the intermediate axis, possibly none, or None if a torque acts."""
 
 CURVES: Final = fields.Table(
     RollingCurves,
@@ -289,7 +284,7 @@ tumbling_answer_from_msg: Final = _ANSWER.answer_of
 
 
 MAX_POSES: Final = 200
-"""Largest number of poses. A pose costs some 0.1 ms as a nested message, and a drawn line needs no more."""
+"""Largest number of poses, which is enough to draw a line. Each takes some 0.1 ms as a nested message."""
 
 
 def path_from_trajectory(trajectory: TrajectoryMsg) -> Path:
