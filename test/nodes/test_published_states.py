@@ -206,51 +206,6 @@ def test_tumbling_from_the_newest_state(servers: Servers) -> None:
     assert list(answer.trajectory.times) == [0.0, 0.25, 0.5]
 
 
-def asking_at(service: Any, stamp_ns: int) -> Any:
-    """Return a request about the brick at a stamp."""
-    request = service.Request(body_name="brick", state_source=2, stamp=stamp_to_msg(stamp_ns))
-    if service is PredictTumbling:
-        request.times = [0.0]
-    return request
-
-
-def test_a_past_stamp_takes_the_state_between_those_around_it(servers: Servers) -> None:
-    client = servers.brick
-    states = client.publisher(Odometry, "/brick/odometry")
-    bodies = [Body(p=np.array([0.1 * i, 0.0, 1.0])) for i in range(4)]
-    for body in bodies:
-        states.publish(body.odometry("brick"))
-    known(client, "brick", bodies[-1].stamp_ns)
-    half = 0.5 * (bodies[1].p + bodies[2].p)  # both have the same velocity, which leaves the middle as it is
-    middle_ns = (bodies[1].stamp_ns + bodies[2].stamp_ns) // 2
-    tumbling = client.ask(asking_at(PredictTumbling, middle_ns))
-    assert tumbling.status == tumbling.OK, tumbling.message
-    check_state(tumbling.state, replace(bodies[1], p=half, stamp_ns=middle_ns))
-    landing = client.ask(asking_at(PredictImpact, middle_ns))
-    assert landing.status == landing.OK, landing.message
-    landing_ns = stamp_ns_from_msg(landing.state_before.header.stamp)
-    assert landing_ns - middle_ns == pytest.approx(1e9 * landing.time_to_contact, abs=1.0)
-
-
-def test_a_stamp_ahead_of_the_newest_state_follows_its_flight(servers: Servers) -> None:
-    """The states came a moment ago, and the question is about the moment at which an arm can move."""
-    client = servers.brick
-    states = client.publisher(Odometry, "/brick/odometry")
-    body = Body()
-    states.publish(body.odometry("brick"))
-    flight = known(client, "brick", body.stamp_ns).trajectory
-    answer = client.ask(asking_at(PredictTumbling, body.stamp_ns + 250_000_000))
-    assert answer.status == answer.OK, answer.message
-    assert stamp_ns_from_msg(answer.state.header.stamp) == body.stamp_ns + 250_000_000
-    for found, samples in (
-        (xyz(answer.state.pose.position), flight.positions),
-        (xyzw(answer.state.pose.orientation), flight.orientations),
-        (xyz(answer.state.linear_velocity), flight.linear_velocities),
-        (xyz(answer.state.angular_velocity), flight.angular_velocities),
-    ):
-        np.testing.assert_allclose(found, rows(samples, len(found))[1], rtol=0.0, atol=ROUNDING)
-
-
 @pytest.mark.parametrize("service", [PredictContactMode, PredictImpact, PredictTumbling])
 def test_the_newest_state_is_answered_as_the_same_one_that_is_given(servers: Servers, service: Any) -> None:
     """A brick in the air, or one that lies on the floor."""
