@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from itertools import permutations
+from itertools import combinations, permutations
 from pathlib import Path
 
 import numpy as np
@@ -11,6 +11,8 @@ import pytest
 import rerun as rr
 from rerun.chunk import RrdReader
 
+from contact_dynamics.diagrams import palette
+from contact_dynamics.diagrams.palette import LEAST_DIFFERENCE, Color
 from contact_dynamics.viewing.blueprint import (
     COLORS_IN_WORDS,
     DIAGRAMS,
@@ -41,6 +43,7 @@ from contact_dynamics.viewing.entities import (
     entity,
 )
 from contact_dynamics.viewing.kept_recording import KeptRecording
+from plots.test_every_diagram import difference
 
 UP = np.array([0.0, 0.0, 1.0])
 FALL = np.column_stack([np.linspace(3.0, 3.5, 20), np.full(20, 4.0), np.linspace(1.0, 0.0, 20) ** 2])
@@ -314,3 +317,53 @@ def test_a_single_point_without_size_is_looked_at_with_its_neighbours() -> None:
     eye = framing.add_body("other", PATH[0] + [LOWEST_DISTANCE, 0.0, 0.0])
     assert eye is not None
     assert is_seen(eye, PATH[0])
+
+
+pytest.importorskip("matplotlib", reason="matplotlib of requirements/test.txt is not installed")
+
+
+MEANINGS = {
+    "measured": palette.MEASURED,
+    "predicted": palette.PREDICTED,
+    "impact": palette.IMPACT,
+    "before the impact": palette.BEFORE_IMPACT,
+    "after the impact": palette.AFTER_IMPACT,
+    "friction cone": palette.FRICTION_CONE,
+    "separates": palette.SEPARATE,
+    "slides": palette.SLIDE,
+    "stays fixed": palette.FIXED,
+    "normal, undecided": palette.NORMAL,
+    "background": palette.BACKGROUND,
+}
+
+
+def apart(one: Color, other: Color) -> float:
+    """How much two colours differ, the smaller of what usual eyes and deuteranopes see."""
+    return difference(*(tuple(part / 255.0 for part in color[:3]) for color in (one, other)))
+
+
+@pytest.mark.parametrize(("one", "other"), list(combinations(MEANINGS, 2)))
+def test_deuteranopes_tell_apart_what_means_different_things(one: str, other: str) -> None:
+    assert apart(MEANINGS[one], MEANINGS[other]) >= LEAST_DIFFERENCE
+
+
+def test_twenty_bodies_are_told_apart_and_from_what_is_predicted_of_them() -> None:
+    assert len(palette.BODIES) == 20
+    for one, other in combinations([*palette.BODIES, palette.PREDICTED, palette.IMPACT], 2):
+        assert apart(one, other) >= LEAST_DIFFERENCE, (one, other)
+
+
+@pytest.mark.parametrize("color", [*MEANINGS.values(), *palette.BODIES])
+def test_words_can_be_read_on_the_background_and_are_otherwise_left_as_they_are(color: Color) -> None:
+    word = palette.readable(color)
+    assert palette.contrast(word, palette.BACKGROUND) >= palette.WORD_CONTRAST
+    if palette.contrast(color, palette.BACKGROUND) >= palette.WORD_CONTRAST:
+        assert word[:3] == color[:3]
+
+
+def test_contrast_is_that_of_wcag() -> None:
+    assert palette.contrast((255, 255, 255, 255), (0, 0, 0, 255)) == pytest.approx(21.0)
+    grey = palette.contrast(
+        (255, 255, 255, 255), (118, 118, 118, 255)
+    )  # the darkest grey of level AA on white
+    assert grey == pytest.approx(4.54, abs=0.005)
