@@ -198,38 +198,3 @@ def test_a_process_that_stood_still_longer_than_a_disk_may_take_waits_on_for_the
         process.stdin.flush()
         process.send_signal(signal.SIGCONT)
         assert process.stdout.readline() == "True\n"
-
-
-KILLED = """
-import sys, time
-from contact_dynamics.recording import BagWriter, Recorder
-writer = BagWriter(sys.argv[1])
-writer.add_topic("/point", "geometry_msgs/msg/Point")
-recorder = Recorder(writer)
-index = 0
-while True:
-    for _ in range(20):
-        recorder.record("/point", bytes([0, 1, 0, 0]) + bytes(24), log_time_ns=index)
-        index += 1
-    time.sleep(0.01)
-    print(recorder.status.written, flush=True)
-"""
-
-
-def test_killed_process_leaves_all_that_it_called_written(tmp_path: Path) -> None:
-    process = subprocess.Popen(
-        [sys.executable, "-c", KILLED, str(tmp_path / "log")], stdout=subprocess.PIPE, text=True
-    )
-    assert process.stdout is not None
-    try:
-        written = next(count for line in process.stdout if (count := int(line)) > 300)
-    finally:
-        process.send_signal(signal.SIGKILL)
-        process.wait()
-        process.stdout.close()
-    reader = BagReader(tmp_path / "log")
-    with pytest.warns(UnfinishedLogWarning):
-        times = [message.log_time_ns for message in reader.messages()]
-    assert len(times) >= written
-    assert times == list(range(len(times)))
-    assert (tmp_path / "log/metadata.yaml").is_file()

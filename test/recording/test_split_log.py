@@ -216,7 +216,7 @@ while True:
     recorder.record("/point", bytes([0, 1, 0, 0]) + bytes(24), log_time_ns=1_000_000 * number)
     number += 1
     if number % 2500 == 0:
-        print(recorder.settle(), number, flush=True)
+        print(recorder.settle(), recorder.status.written, number, flush=True)
 """
 
 
@@ -226,14 +226,14 @@ def test_what_was_settled_survives_a_kill_and_finished_files_are_whole(tmp_path:
     ) as writing:
         assert writing.stdout is not None
         for _ in range(3):
-            settled, number = writing.stdout.readline().split()
+            settled, count, number = writing.stdout.readline().split()
         writing.send_signal(signal.SIGKILL)
     assert settled == "True"
     reader = BagReader(tmp_path / "log")
     with pytest.warns(UserWarning, match="its writer was killed"):
         times = [message.log_time_ns for message in reader.messages()]
     assert times == [1_000_000 * number for number in range(len(times))]
-    assert len(times) >= int(number)
+    assert len(times) >= int(count) == int(number)
     assert {loss.path for loss in reader.losses} == {reader.paths[-1]}
     assert len(reader.paths) == len(metadata_of(tmp_path / "log")["files"])
 
