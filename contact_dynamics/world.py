@@ -18,10 +18,18 @@ from contact_dynamics.errors import InvalidFieldError, NotSupportedError, Unknow
 from contact_dynamics.records import Record
 from contact_dynamics.rigid_body.body import BodyState, HasMassProperties, MassProperties
 from contact_dynamics.rigid_body.inertia import solids
-from contact_dynamics.rigid_body.inertia.triangle_mesh import mesh
+from contact_dynamics.rigid_body.inertia.distribution import MassDistribution, combined
+from contact_dynamics.rigid_body.inertia.triangle_mesh import mesh, signed_volumes
 from contact_dynamics.shapes import convex
-from contact_dynamics.shapes.concavity import warn_if_concave
-from contact_dynamics.shapes.convex import MAX_VERTICES, NO_SHAPE, ConvexShape, box_vertices, polyhedron
+from contact_dynamics.shapes.concavity import parts_of_mesh, warn_if_concave
+from contact_dynamics.shapes.convex import (
+    MAX_VERTICES,
+    NO_SHAPE,
+    ConvexShape,
+    box_vertices,
+    polyhedron,
+    union,
+)
 from contact_dynamics.shapes.obstacle import Obstacle
 from contact_dynamics.tolerances import SURFACES_AS_ONE
 from contact_dynamics.validation import (
@@ -38,9 +46,9 @@ from contact_dynamics.validation import (
 from contact_dynamics.validation_types import checks_types
 
 if TYPE_CHECKING:
-    from numpy.typing import ArrayLike
+    from collections.abc import Sequence
 
-    from contact_dynamics.rigid_body.inertia import MassDistribution
+    from numpy.typing import ArrayLike, NDArray
 
 __all__ = ["LONGEST_NAME", "MAX_VERTICES", "Body", "Surface", "World", "box_vertices"]
 
@@ -53,8 +61,9 @@ class Body(HasMassProperties):
     """Rigid body with a name and a shape.
 
     `Body.box`, `Body.sphere`, `Body.cylinder`, `Body.capsule` and `Body.from_mesh` make uniform bodies, whose
-    mass properties match the shape. `Body.from_urdf` and `Body.from_sdf` read a link of a file. `Body.of`
-    takes any distribution of mass, such as measured values or several parts of `inertia`.
+    mass properties match the shape. `Body.union` makes one body of several. `Body.from_urdf` and
+    `Body.from_sdf` read a link of a file. `Body.of` takes any distribution of mass, such as measured values
+    or several parts of `inertia`.
 
     Attributes:
         name: Name by which questions refer to the body.
@@ -177,8 +186,9 @@ class Body(HasMassProperties):
     ) -> Body:
         """Return the uniform solid inside a closed mesh, with the mesh's frame as its published frame F.
 
-        The mass properties are those of the mesh. The shape is the convex hull of the mesh, with a
-        `ConcaveShapeWarning` if they differ.
+        The mass properties are those of the mesh. The shape is the union of the convex hulls of the mesh's
+        connected parts, with a `ConcaveShapeWarning` for each part that differs from its hull, or the hull of
+        the mesh if there are more than `MAX_PARTS`.
 
         Args:
             vertices_F: (n, 3), m, or a file: STL, OBJ, PLY or glTF, which requires trimesh
@@ -211,7 +221,12 @@ class Body(HasMassProperties):
             raise InvalidFieldError("triangles", None, "(m, 3) indices of vertices")
         vertices = check_positive("scale", scale) * check_array("vertices_F", vertices_F, (None, 3))
         solid = mesh(vertices, triangles, mass=mass, density=density)
-        body = cls.of(name, solid, vertices_F=vertices)
+        parts = parts_of_mesh(f"mesh {name!r}", vertices, triangles)
+        if len(parts) > 1:
+            pieces = [_uniform_part(f"{name} {i}", *part) for i, part in enumerate(parts)]
+            body = cls.of(name, solid, shape_F=union([piece.shape.moved(piece.p_FB_F) for piece in pieces]))
+        else:
+            body = cls.of(name, solid, vertices_F=vertices)
         if file is not None:
             warn_if_implausible(f"mesh {file}", solid, body.shape.moved(body.p_FB_F))
         return body
@@ -221,8 +236,8 @@ class Body(HasMassProperties):
     def from_urdf(cls, source: str | Path, link: str | None = None, *, name: str | None = None) -> Body:
         """Return a link of a URDF with its inertia and its collision shape. Its frame F is that of the link.
 
-        The shape is a box, a cylinder, a sphere, a capsule, or the convex hull of a mesh, which requires
-        trimesh. Several shapes are replaced by their common hull, with a `ConcaveShapeWarning`. Friction and
+        The shape is a box, a cylinder, a sphere, a capsule, or the convex hulls of the connected parts of a
+        mesh, which requires trimesh, or the union of several of these (`shapes.union`). Friction and
         restitution are properties of surfaces in this package, and are not read.
 
         Args:
@@ -253,6 +268,41 @@ class Body(HasMassProperties):
 
     @classmethod
     @checks_types
+    def union(cls, parts: Sequence[Body], *, name: str = "union") -> Body:
+        """Return several bodies as one rigid body, which need not be convex, such as a hammer.
+
+        The parts' published frames coincide, and are that of the whole; `placed` moves a part. If parts
+        overlap, the mass of the overlap counts twice. A part without a shape contributes its mass only.
+
+        Raises:
+            InvalidFieldError: there is no part, or their shapes have different roundings (`shapes.union`).
+            TooLargeError: there are more than `MAX_PARTS` convex parts.
+
+        Examples:
+            >>> import contact_dynamics as cd
+            >>> head, handle = cd.Body.box((0.1, 0.03, 0.03), 0.5), cd.Body.box((0.02, 0.02, 0.3), 0.1)
+            >>> hammer = cd.Body.union([head.placed([0, 0, 0.165]), handle], name="hammer")
+            >>> print(f"{hammer.p_FB_F[2]:.4f} m, {len(hammer.shape.parts)} parts")
+            0.1375 m, 2 parts
+        """
+        mass = combined(MassDistribution.of(part.mass_properties, part.p_FB_F) for part in parts)
+        return cls.of(name, mass, shape_F=union([part.shape.moved(part.p_FB_F) for part in parts]))
+
+    def placed(self, p_GF_G: ArrayLike = (0.0, 0.0, 0.0), q_GF: ArrayLike = (0.0, 0.0, 0.0, 1.0)) -> Body:
+        """Return the same body with another published frame G, in which F has the given pose.
+
+        Args:
+            p_GF_G: (3,), m, F's origin in G.
+            q_GF: (4,), unit quaternion x, y, z, w: F's coordinates into G's.
+
+        Raises:
+            InvalidFieldError: a number is not finite, or the quaternion is not unit.
+        """
+        mass = MassDistribution.of(self.mass_properties, self.p_FB_F).placed(p_GF_G=p_GF_G, q_GF=q_GF)
+        return Body.of(self.name, mass, shape_F=self.shape.moved(self.p_FB_F).moved(p_GF_G, q_GF))
+
+    @classmethod
+    @checks_types
     def of(
         cls,
         name: str,
@@ -269,7 +319,7 @@ class Body(HasMassProperties):
             vertices_F: (k, 3), m, corners of the shape in F, as an alternative to ``shape_F``. Their convex
                 hull is used. Corners of a concave body cause a `ConcaveShapeWarning`; to use the hull
                 intentionally, pass ``shape_F=polyhedron(vertices)``.
-            shape_F: Shape in F.
+            shape_F: Shape in F. That of a concave body is a `shapes.union` of convex parts.
 
         Raises:
             InvalidFieldError: the mass is a point or a line, vertices are not finite or not of shape (k, 3),
@@ -290,6 +340,13 @@ class Body(HasMassProperties):
             p_FB_F=mass.p_FB_F,
             shape=shape_F.moved(-mass.p_FB_F),
         )
+
+
+def _uniform_part(name: str, vertices_F: FloatArray, triangles: NDArray[np.int64]) -> Body:
+    """Return a part of a mesh, or a cavity, whose triangles are inside out."""
+    inside_out = signed_volumes(vertices_F, triangles).sum() < 0.0
+    solid = mesh(vertices_F, triangles[:, ::-1] if inside_out else triangles, density=1.0)
+    return Body.of(name, solid, vertices_F=vertices_F)
 
 
 _AT_REST: Final = np.zeros(3)

@@ -89,12 +89,14 @@ class Model:
         """Name the parameters.
 
         Raises:
-            NotSupportedError: the body's shape is empty, or has rims.
+            NotSupportedError: the body's shape is empty, or has rims or several parts.
         """
-        if body.shape.is_empty or body.shape.rims:
+        shape = body.shape
+        if shape.is_empty or shape.rims or shape.parts:
+            found = "rims of a round shape" if shape.rims else "several parts" if shape.parts else "no shape"
             raise NotSupportedError(
                 f"body {body.name!r} must have corners (a box or vertices, rounded or not, or a sphere) "
-                f"for a calibration, got {'rims of a round shape' if body.shape.rims else 'no shape'}"
+                f"for a calibration, got {found}"
             )
         self.body = body
         self.surfaces = tuple(surfaces)

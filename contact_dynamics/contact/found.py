@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""This file finds the points of a convex body that touch the world's surfaces at a pose.
+"""This file finds the points of a body that touch the world's surfaces at a pose.
 
 A face or an edge that lies flush gives its extreme points as contacts: the corners of a face, the two ends of
 a cylinder's or a capsule's line. They carry every force that the whole face or edge can. A ball touches in
@@ -23,7 +23,7 @@ import numpy as np
 
 from contact_dynamics.contact.contact import ContactSet, static_or_none
 from contact_dynamics.contact.curvature import Curvatures
-from contact_dynamics.contact.touches import Side, Touch, flat_touches, lowest_along, site_of, touches_of
+from contact_dynamics.contact.touches import Side, Touch, flat_touches, gap_between, lowest_along, touches_of
 from contact_dynamics.errors import InvalidFieldError, NoShapeError
 from contact_dynamics.tolerances import DISTANCE_TOLERANCE
 from contact_dynamics.validation import FloatArray, check_not_negative
@@ -152,7 +152,7 @@ def _gap(body: Body, state: BodyState, surface: Surface | Obstacle) -> float:
     if isinstance(surface, Surface):
         lowest = lowest_along(body.shape, state.p_WB_W, state.R_WB, surface.normal_W[None])
         return float(lowest[0] - surface.p_WS_W @ surface.normal_W)
-    return site_of(body.shape, state.p_WB_W, state.R_WB, surface).gap
+    return gap_between(body.shape, state.p_WB_W, state.R_WB, surface)
 
 
 def check_has_shape(body: Body) -> None:

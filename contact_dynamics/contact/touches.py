@@ -20,7 +20,12 @@ Rims are covered where a face of the obstacle touches them, as on a flat, but wi
 A sharp corner on an edge or on a corner has no normal of its own, and gets one of those above. Bodies that
 penetrate get the direction of the least penetration.
 
-Not covered: rims at an edge or a corner of the obstacle (`NotSupportedError`).
+A body that is a union of convex parts touches with each of them. At a seam, where parts touch each other,
+each part has sides that the union does not have. Parts within the tolerance of the obstacle therefore share a
+direction if one separates them all, and only the extreme points of their contacts on one plane count.
+
+Not covered: rims at an edge or a corner of the obstacle (`NotSupportedError`). Where a union penetrates an
+obstacle at a seam by more than the tolerance, the direction may be that of the seam.
 
 An outline of the parts in a touching plane is a convex polygon, a line or a point. Where a body's and an
 obstacle's overlap, the extreme points are corners of either within the other, and crossings of their sides.
@@ -29,6 +34,7 @@ obstacle's overlap, the extreme points are corners of either within the other, a
 from __future__ import annotations
 
 import math
+from itertools import zip_longest
 from typing import TYPE_CHECKING, Final, NamedTuple, Protocol, TypeAlias
 
 import numpy as np
@@ -41,7 +47,7 @@ from contact_dynamics.shapes.obstacle import closest_points
 from contact_dynamics.tolerances import PARALLEL_EDGES, SAME_POINT
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Iterator, Sequence
 
     from contact_dynamics.shapes.convex import ConvexShape
     from contact_dynamics.validation import FloatArray
@@ -128,6 +134,7 @@ def _of_rim(
 
 
 _ANY: Final = np.array([0.0, 0.0, 1.0])
+_NONE: Final = np.zeros((0, 3))
 
 
 class Hull(Protocol):
@@ -142,6 +149,10 @@ class Hull(Protocol):
         """Its corners, edges and faces, in the axes in which the pose is given."""
 
 
+Pair: TypeAlias = "tuple[ConvexShape, Hull]"
+"""A convex part of a body, and a hull that it may touch."""
+
+
 class Site(NamedTuple):
     """Where a body is nearest to an obstacle, or deepest in it."""
 
@@ -150,8 +161,13 @@ class Site(NamedTuple):
     level: float  # m, the obstacle's furthest extent along the normal: its points have n . p <= level
 
 
+def gap_between(shape: ConvexShape, p_WB_W: FloatArray, R_WB: FloatArray, hull: Hull) -> float:
+    """Return the gap between a body at a pose and a hull, m, that of its nearest or deepest part."""
+    return min(site_of(part, p_WB_W, R_WB, hull).gap for part in shape.convex_parts)
+
+
 def site_of(shape: ConvexShape, p_WB_W: FloatArray, R_WB: FloatArray, hull: Hull) -> Site:
-    """Return where a body at a pose is nearest to a hull.
+    """Return where a convex body at a pose is nearest to a hull.
 
     For polyhedra that are apart, the gap is the largest one along the directions above. It is their distance
     where a corner faces a face or edges cross. It is less, never more, where only edges or corners are
@@ -213,11 +229,70 @@ def touches_of(
     Raises:
         NotSupportedError: a rim is at an edge or a corner of the hull.
     """
+    return touches_between([(part, hull) for part in shape.convex_parts], p_WB_W, R_WB, tolerance)
+
+
+def touches_between(
+    pairs: Sequence[Pair], p_WB_W: FloatArray, R_WB: FloatArray, tolerance: float
+) -> list[Touch]:
+    """Return the contacts of the convex parts of a body with hulls, as `touches_of` does, for all pairs."""
+    sites = [(pair, site_of(pair[0], p_WB_W, R_WB, pair[1])) for pair in pairs]
+    near = [(pair, site) for pair, site in sites if site.gap <= tolerance]
+    groups = [near] if len(near) < 2 else _with_shared_normals(near, p_WB_W, R_WB, tolerance)
+    return [
+        touch
+        for group in groups
+        for touch in _extreme(
+            [touch for pair, site in group for touch in _touches_at(pair, site, p_WB_W, R_WB, tolerance)],
+            parts=len(group),
+        )
+    ]
+
+
+def _extreme(touches: list[Touch], *, parts: int) -> list[Touch]:
+    """Return the extreme ones of contacts on one plane, which are all of those of a single part."""
+    if parts < 2 or not touches:
+        return touches
+    points = np.array([touch.p_WC_W for touch in touches])
+    new = [i for i, point in enumerate(points) if _is_new(point, [*points[:i]], 0.0)]
+    return [touches[new[i]] for i in outline(points[new], tangent_rows(touches[0].normal_W)).order]
+
+
+def _with_shared_normals(
+    near: list[tuple[Pair, Site]], p_WB_W: FloatArray, R_WB: FloatArray, tolerance: float
+) -> Iterator[list[tuple[Pair, Site]]]:
+    """Yield pairs that touch, grouped by a plane that separates them, with their sites along its normal.
+
+    The normal that separates the most pairs comes first.
+    """
+    groups = [_axes(shape, p_WB_W, R_WB, hull.features) for (shape, hull), _ in near]
+    axes = np.concatenate([group for same in zip_longest(*groups, fillvalue=_NONE) for group in same])
+    levels = [(axes @ hull.features.corners.T).max(axis=1) for (_, hull), _ in near]
+    gaps = np.array([lowest_along(shape, p_WB_W, R_WB, axes) for (shape, _), _ in near]) - levels
+    separated = gaps >= [[min(site.gap, 0.0) - tolerance] for _, site in near]
+    waiting = np.ones(len(near), dtype=bool)
+    while waiting.any():
+        counts = separated[waiting].sum(axis=0)
+        least = np.where(separated[waiting], gaps[waiting], math.inf).min(axis=0)
+        least[counts < counts.max()] = -math.inf
+        best = int(np.argmax(least >= least.max() - SAME_POINT))
+        chosen = np.flatnonzero(waiting & separated[:, best])
+        waiting[chosen] = False
+        heights = np.array([levels[i][best] for i in chosen])
+        order = np.argsort(heights, kind="stable")
+        for rows in np.split(order, np.flatnonzero(np.diff(heights[order]) > tolerance) + 1):
+            yield [
+                (near[i][0], Site(float(gaps[i, best]), axes[best], float(levels[i][best])))
+                for i in chosen[rows].tolist()
+            ]
+
+
+def _touches_at(
+    pair: Pair, site: Site, p_WB_W: FloatArray, R_WB: FloatArray, tolerance: float
+) -> list[Touch]:
+    """Return the contacts of a convex body with a hull where they are nearest."""
+    (shape, hull), n_W = pair, site.normal_W
     theirs = hull.features
-    site = site_of(shape, p_WB_W, R_WB, hull)
-    if site.gap > tolerance:
-        return []
-    n_W = site.normal_W
     if shape.rims and float((theirs.normals @ n_W).max()) < 1.0 - SAME_POINT:
         message = f"shape must touch with a rim at a face only, got a rim at an edge of {hull.name!r}"
         raise NotSupportedError(message)

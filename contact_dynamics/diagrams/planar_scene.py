@@ -125,7 +125,7 @@ def cone_edges(contact: PlanarContact, *, length: float) -> FloatArray:
 
 
 def silhouette(shape: Shape, axes_B: FloatArray) -> FloatArray:
-    """Return a convex shape's outline on two axes, (2, 3), unit, as a closed strip, (k, 2), m."""
+    """Return the outline of a shape's hull on two axes, (2, 3), unit, as a closed strip, (k, 2), m."""
     from scipy.spatial import ConvexHull
 
     corners = np.vstack([shape.triangles_B.reshape(-1, 3), shape.edges_B.reshape(-1, 3)]) @ axes_B.T

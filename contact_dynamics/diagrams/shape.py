@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Makes the drawable shape of a convex body: faces with edges between them, flat facets on round sides."""
+"""Makes the drawable shape of a body: faces with edges between them, flat facets on round sides."""
 
 from __future__ import annotations
 
@@ -47,6 +47,14 @@ class Shape:
 
 def drawn_shape(shape: ConvexShape) -> Shape:
     """Return a body's shape. A round one has circles and radii among its edges, which show how it turns."""
+    if shape.parts:
+        drawn = [drawn_shape(part) for part in shape.parts]
+        return Shape(
+            triangles_B=np.concatenate([part.triangles_B for part in drawn]),
+            normals_B=np.concatenate([part.normals_B for part in drawn]),
+            edges_B=np.concatenate([part.edges_B for part in drawn]),
+            size=drawn_shape(replace(shape, parts=())).size,
+        )
     if shape.is_polyhedron:
         return convex_shape(shape.vertices)
     hull = convex_shape(_surface_points(shape), smooth=SHARP)

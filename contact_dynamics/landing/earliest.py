@@ -34,10 +34,12 @@ from contact_dynamics.validation import check_not_negative
 
 if TYPE_CHECKING:
     from contact_dynamics.contact.contact import ContactSet
+    from contact_dynamics.contact.touches import Site, Touch
     from contact_dynamics.landing.acceleration_bounds import Motion
     from contact_dynamics.rigid_body.body import BodyState
     from contact_dynamics.shapes.convex import ConvexShape
     from contact_dynamics.shapes.obstacle import Obstacle
+    from contact_dynamics.tumbling.motion import Sample
     from contact_dynamics.validation import FloatArray
     from contact_dynamics.world import Body, Surface, World
 
@@ -222,7 +224,7 @@ def _touching(body: Body, state: BodyState, world: World, distance_tolerance: fl
 
 
 MAX_STEPS: Final = 5_000
-"""Largest number of steps of a search, which take about a second. A toss takes ten to a hundred steps."""
+"""Largest number of steps of a search for each part, about a second. A toss takes ten to a hundred steps."""
 
 
 def first_touch(
@@ -247,27 +249,40 @@ def first_touch(
     until = check_not_negative("horizon", horizon)
     if shape_B.is_empty:
         raise InvalidFieldError("shape_B", "nothing", "a shape, which can touch")
-    now = 0.0
-    for _ in range(MAX_STEPS):
-        if work is not None:
-            work.spend(OBSTACLE_STEP, now)
+    parts, now = shape_B.convex_parts, 0.0
+    due = [now] * len(parts)  # until these times, parts cannot touch
+    for _ in range(MAX_STEPS * len(parts)):
         sample = motion.sample(now)
-        p_WB_W, R_WB = np.array(sample.p_WB_W), rotation_matrix(np.array(sample.q_WB))
-        site = site_of(shape_B, p_WB_W, R_WB, obstacle)
-        descent = Descent(motion, shape_B, site.level * site.normal_W, site.normal_W)
-        bound = descent.bound_from(now)
-        if site.gap <= GRAZING_DEPTH:
-            touches = touches_of(shape_B, p_WB_W, R_WB, obstacle, DISTANCE_TOLERANCE)
-            points = np.array([touch.p_WC_W for touch in touches]).reshape(-1, 3)
-            velocities = np.array(sample.v_WB_W) + np.cross(sample.w_WB_W, points - p_WB_W)
-            if not (velocities @ site.normal_W > 0.0).all():
+        pose = np.array(sample.p_WB_W), rotation_matrix(np.array(sample.q_WB))
+        sites = {i: site_of(part, *pose, obstacle) for i, part in enumerate(parts) if due[i] <= now}
+        if work is not None:
+            work.spend(OBSTACLE_STEP * len(sites), now)
+        if any(site.gap <= GRAZING_DEPTH for site in sites.values()):
+            touches = touches_of(shape_B, *pose, obstacle, DISTANCE_TOLERANCE)
+            if any(_approach(sample, touch) <= 0.0 for touch in touches):
                 return now
-            pull = bound.fall + descent.reach * bound.turning
-            step = math.sqrt(2.0 * GRAZING_DEPTH / pull) if pull > 0.0 else LEAVING_STEP
-        else:
-            step = descent.free_for(descent.at(now), bound)
         if now >= until:
             return None
-        now = min(now + step, bound.until, until)
+        for i, site in sites.items():
+            due[i] = _free_until(motion, parts[i], site, now)
+        now = min(*due, until)
     message = f"obstacle {obstacle.name!r}: the body must pass it, got a body close to it until {now:g} s"
     raise NotSupportedError(message)
+
+
+def _approach(sample: Sample, touch: Touch) -> float:
+    """Return the speed, m/s, at which a body leaves a contact."""
+    velocity = np.array(sample.v_WB_W) + np.cross(sample.w_WB_W, touch.p_WC_W - sample.p_WB_W)
+    return float(velocity @ touch.normal_W)
+
+
+def _free_until(motion: Motion, part: ConvexShape, site: Site, now: float) -> float:
+    """Return the time, s, until which a convex part of a body cannot touch, or leaves an obstacle."""
+    descent = Descent(motion, part, site.level * site.normal_W, site.normal_W)
+    bound = descent.bound_from(now)
+    if site.gap > GRAZING_DEPTH:
+        step = descent.free_for(descent.at(now), bound)
+    else:
+        pull = bound.fall + descent.reach * bound.turning
+        step = math.sqrt(2.0 * GRAZING_DEPTH / pull) if pull > 0.0 else LEAVING_STEP
+    return min(now + step, bound.until)

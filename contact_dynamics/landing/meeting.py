@@ -1,11 +1,12 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Finds when two convex bodies in flight meet, and where.
+"""Finds when two bodies in flight meet, and where.
 
 A plane separates two bodies that are apart (`contact.touches`). Seen from the centre of mass of the second
 body, the plane moves at the mean of the speeds at which the nearest points of both approach it. Both bodies
 stay on their sides for a time that bounds on their accelerations guarantee (`acceleration_bounds`). The
 search goes to the end of that time, takes the plane that separates best then, and repeats, as that for an
-obstacle does (`earliest`). It finds a touch within twice `GRAZING_DEPTH`, and misses no deeper one.
+obstacle does (`earliest`). It finds a touch within twice `GRAZING_DEPTH`, and misses no deeper one. Bodies of
+several convex parts meet when the first pair of parts does.
 
 A shape over which a ball rolls counts as its hull, and its radius is added to that of the other.
 
@@ -24,7 +25,7 @@ from contact_dynamics.constants import HORIZON, STANDARD_GRAVITY_W
 from contact_dynamics.contact.contact import ContactSet
 from contact_dynamics.contact.found import check_has_shape
 from contact_dynamics.contact.pairs import check_one_time
-from contact_dynamics.contact.touches import site_of, touches_of
+from contact_dynamics.contact.touches import Pair, Site, site_of, touches_between
 from contact_dynamics.errors import InvalidFieldError, NotSupportedError
 from contact_dynamics.landing.acceleration_bounds import all_free_for, bounds_of
 from contact_dynamics.landing.earliest import Landing
@@ -44,12 +45,13 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
     from contact_dynamics.rigid_body.body import BodyState
+    from contact_dynamics.shapes.convex import ConvexShape
     from contact_dynamics.shapes.hull_features import Features
     from contact_dynamics.tumbling import FreeMotion
     from contact_dynamics.world import Body
 
 MAX_STEPS: Final = 5_000
-"""Largest number of steps of a search. Two boxes that meet take ten to fifty."""
+"""Largest number of steps of a search for each pair of parts. Two boxes that meet take ten to fifty."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
@@ -115,52 +117,41 @@ def next_meeting(
             message = f"body {each.name!r} must have a shape without circular rims to meet another body"
             raise NotSupportedError(message)
     tolerance = max(check_not_negative("distance_tolerance", distance_tolerance), DISTANCE_TOLERANCE)
-    pair = _Pair(
+    bodies = _Bodies(
         body,
         other,
         free_motion(body.mass_properties, state, gravity_W=gravity),
         free_motion(other.mass_properties, other_state, gravity_W=others),
     )
-    _check_apart(pair, tolerance)
-    found = pair.first_touch(
+    found = bodies.first_touch(
         check_not_negative("horizon", horizon),
         tolerance=tolerance,
         leaves=check_not_negative("velocity_tolerance", velocity_tolerance),
     )
     if found is None:
         return None
-    seconds, points, normal_W, velocities = found
-    approach = velocities @ normal_W
+    seconds, touching = found
+    approach = touching.approach
     stays = approach <= velocity_tolerance
     count = int(stays.sum())
     return Meeting(
         seconds=seconds,
-        state=pair.motion.state_at(seconds),
-        other_state=pair.others.state_at(seconds),
+        state=bodies.motion.state_at(seconds),
+        other_state=bodies.others.state_at(seconds),
         contacts=ContactSet(
-            p_WC_W=points[stays],
-            normals_W=np.tile(normal_W, (count, 1)),
+            p_WC_W=touching.points[stays],
+            normals_W=touching.normals[stays],
             frictions=np.full(count, friction),
             restitutions=np.full(count, restitution),
             surfaces=(other.name,) * count,
         ),
-        velocities_W=velocities[stays],
+        velocities_W=touching.velocities[stays],
         strikes=bool((approach < -velocity_tolerance).any()),
     )
 
 
-def _check_apart(pair: _Pair, tolerance: float) -> None:
-    gap = pair.at(0.0).gap
-    if gap < -tolerance:
-        raise InvalidFieldError(
-            "other_state",
-            f"{pair.other.name!r} {-gap:.6g} m deep in {pair.body.name!r}",
-            f"at most {tolerance:g} m deep (distance_tolerance)",
-        )
-
-
-class _Apart(NamedTuple):
-    """Two bodies at one time, and the plane that separates them best. Vectors are in world axes."""
+class _Relative(NamedTuple):
+    """Two bodies at one time. Vectors are in world axes."""
 
     p: FloatArray  # (3,), m, from the second centre of mass to the first
     v: FloatArray  # (3,), m/s, of the first relative to the second
@@ -169,8 +160,20 @@ class _Apart(NamedTuple):
     R: FloatArray  # (3, 3), rotation of the first body
     R_other: FloatArray
     p_other: FloatArray  # (3,), m, in the world
-    gap: float  # m, negative where they penetrate
-    normal: FloatArray  # (3,), unit, into the first body
+
+
+class _Touching(NamedTuple):
+    """Where two bodies touch, in the world."""
+
+    points: FloatArray  # (n, 3), m
+    normals: FloatArray  # (n, 3), unit, into the first body
+    velocities: FloatArray  # (n, 3), m/s, of the first relative to the second
+
+    @property
+    def approach(self) -> FloatArray:
+        """Return the speeds, (n,), m/s, at which the bodies separate there."""
+        speeds: FloatArray = np.einsum("ni,ni->n", self.velocities, self.normals)
+        return speeds
 
 
 class _Hull(NamedTuple):
@@ -178,76 +181,100 @@ class _Hull(NamedTuple):
     features: Features
 
 
-class _Pair:
-    """Two bodies in flight. The first has the sum of both roundings, and the second is a hull."""
+class _PairOfParts:
+    """A convex part of each of two bodies. The first has the sum of both roundings; the second is a hull."""
+
+    def __init__(self, part: ConvexShape, theirs: ConvexShape, name: str) -> None:
+        self.shape = replace(part, rounding=part.rounding + theirs.rounding)
+        self.hull = _Hull(name, features_of(theirs))
+        self.corners, self.theirs = part.vertices, theirs.vertices
+        self.arms, self.their_arms = (np.linalg.norm(each, axis=1) for each in (self.corners, self.theirs))
+
+    @property
+    def both(self) -> Pair:
+        """Return the two parts."""
+        return self.shape, self.hull
+
+    def site(self, at: _Relative) -> Site:
+        """Return where the parts are nearest, in the axes of the second body."""
+        return site_of(self.shape, at.p @ at.R_other, at.R_other.T @ at.R, self.hull)
+
+
+class _Bodies:
+    """Two bodies in flight."""
 
     def __init__(self, body: Body, other: Body, motion: FreeMotion, others: FreeMotion) -> None:
         self.body, self.other, self.motion, self.others = body, other, motion, others
-        self.rounding = other.shape.rounding  # m, of the second body
-        self.shape = replace(body.shape, rounding=body.shape.rounding + self.rounding)
-        self.hull = _Hull(other.name, features_of(other.shape))
-        self.corners, self.theirs = body.shape.vertices, other.shape.vertices
-        self.arms, self.their_arms = (np.linalg.norm(each, axis=1) for each in (self.corners, self.theirs))
+        self.pairs = [
+            _PairOfParts(part, theirs, other.name)
+            for part in body.shape.convex_parts
+            for theirs in other.shape.convex_parts
+        ]
 
-    def at(self, seconds: float) -> _Apart:
+    def at(self, seconds: float) -> _Relative:
         """Return both bodies at a time, s."""
         mine, theirs = self.motion.sample(seconds), self.others.sample(seconds)
-        R, R_other = rotation_matrix(np.array(mine.q_WB)), rotation_matrix(np.array(theirs.q_WB))
         p_other = np.array(theirs.p_WB_W)
-        p, v = np.array(mine.p_WB_W) - p_other, np.subtract(mine.v_WB_W, theirs.v_WB_W)
-        site = site_of(self.shape, p @ R_other, R_other.T @ R, self.hull)
-        return _Apart(
-            p=p,
-            v=v,
+        return _Relative(
+            p=np.array(mine.p_WB_W) - p_other,
+            v=np.subtract(mine.v_WB_W, theirs.v_WB_W),
             w=np.array(mine.w_WB_W),
             w_other=np.array(theirs.w_WB_W),
-            R=R,
-            R_other=R_other,
+            R=rotation_matrix(np.array(mine.q_WB)),
+            R_other=rotation_matrix(np.array(theirs.q_WB)),
             p_other=p_other,
-            gap=site.gap,
-            normal=R_other @ site.normal_W,
         )
 
     def first_touch(
         self, horizon: float, *, tolerance: float, leaves: float
-    ) -> tuple[float, FloatArray, FloatArray, FloatArray] | None:
-        """Return when they meet, s, the contact points, (n, 3), the normal and the relative velocities."""
+    ) -> tuple[float, _Touching] | None:
+        """Return when they meet, s, and where."""
         work, now = SearchWork(), 0.0
-        for _ in range(MAX_STEPS):
-            work.spend(OBSTACLE_STEP, now)
-            apart = self.at(now)
+        due = [now] * len(self.pairs)  # until these times, pairs of parts cannot touch
+        for _ in range(MAX_STEPS * len(self.pairs)):
+            at, pairs = self.at(now), [i for i, time in enumerate(due) if time <= now]
+            work.spend(OBSTACLE_STEP * len(pairs), now)
+            sites = {i: self.pairs[i].site(at) for i in pairs}
+            gap = min((site.gap for site in sites.values()), default=math.inf)
+            if now == 0.0 and gap < -tolerance:
+                raise InvalidFieldError(
+                    "other_state",
+                    f"{self.other.name!r} {-gap:.6g} m deep in {self.body.name!r}",
+                    f"at most {tolerance:g} m deep (distance_tolerance)",
+                )
             fastest = 0.0
             # At the beginning, points within the tolerance touch. Later, the search comes as near as it can.
-            if apart.gap <= (tolerance if now == 0.0 else 2.0 * GRAZING_DEPTH):
-                points, velocities = self._touching(apart, tolerance)
-                along = velocities @ apart.normal
+            if gap <= (tolerance if now == 0.0 else 2.0 * GRAZING_DEPTH):
+                touching = self._touching(at, tolerance)
+                along = touching.approach
                 if len(along) and not (along > (leaves if now == 0.0 else 0.0)).all():
                     closing = -float(along.min())
                     if now > 0.0 and closing > 0.0:  # a step of Newton's method leaves rounding
-                        later = self.at(now + apart.gap / closing)
-                        there = self._touching(later, tolerance)
+                        there = self._touching(self.at(now + gap / closing), tolerance)
                         # Bodies that graze each other leave before that.
-                        if (there[1] @ later.normal <= 0.0).any():
-                            return now + apart.gap / closing, there[0], later.normal, there[1]
-                    return now, points, apart.normal, velocities
+                        if (there.approach <= 0.0).any():
+                            return now + gap / closing, there
+                    return now, touching
                 fastest = float(along.max(initial=0.0))
             if now >= horizon:
                 return None
-            now = min(now + self._free_for(apart, fastest), horizon)
+            for i, site in sites.items():
+                due[i] = now + self._free_for(self.pairs[i], at, site, fastest)
+            now = min(*due, horizon)
         message = (
             f"other: the bodies must meet or pass each other, got bodies that stay close until {now:g} s"
         )
         raise NotSupportedError(message)
 
-    def _free_for(self, apart: _Apart, leaving: float) -> float:
-        """Return for how long, s, they cannot touch, or a separation at the speed ``leaving``, m/s, lasts."""
-        n = apart.normal
-        heights = self.corners @ (n @ apart.R) + apart.p @ n - self.shape.rounding
-        rates = self.corners @ (np.cross(n, apart.w) @ apart.R) + apart.v @ n
-        depths = self.theirs @ (n @ apart.R_other)
-        their_rates = self.theirs @ (np.cross(n, apart.w_other) @ apart.R_other)
-        mine, theirs = self._bound(n)
-        if leaving > 0.0 and apart.gap <= 2.0 * GRAZING_DEPTH:
+    def _free_for(self, pair: _PairOfParts, at: _Relative, site: Site, leaving: float) -> float:
+        """Return for how long, s, parts cannot touch, or separate at the speed ``leaving``, m/s."""
+        n = at.R_other @ site.normal_W
+        heights = pair.corners @ (n @ at.R) + at.p @ n - pair.shape.rounding
+        rates = pair.corners @ (np.cross(n, at.w) @ at.R) + at.v @ n
+        depths = pair.theirs @ (n @ at.R_other)
+        their_rates = pair.theirs @ (np.cross(n, at.w_other) @ at.R_other)
+        mine, theirs = self._bound(pair, n)
+        if leaving > 0.0 and site.gap <= 2.0 * GRAZING_DEPTH:
             pull = mine.max() + theirs.max()
             return max(math.sqrt(2.0 * GRAZING_DEPTH / pull) if pull > 0.0 else LEAVING_STEP, 0.0)
         low, high = int(heights.argmin()), int(depths.argmax())
@@ -258,18 +285,17 @@ class _Pair:
             all_free_for(plane - depths, speed - their_rates, theirs),
         )
 
-    def _bound(self, n: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Return the largest accelerations of corners of both bodies towards a plane between them, m/s^2."""
+    def _bound(self, pair: _PairOfParts, n: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Return the largest accelerations of corners of both parts towards a plane between them, m/s^2."""
         mine = bounds_of(self.motion, n)(0.0)
         theirs = bounds_of(self.others, -n)(0.0)
-        return mine.fall + theirs.fall + self.arms * mine.turning, self.their_arms * theirs.turning
+        return mine.fall + theirs.fall + pair.arms * mine.turning, pair.their_arms * theirs.turning
 
-    def _touching(self, apart: _Apart, tolerance: float) -> tuple[FloatArray, FloatArray]:
-        """Return contact points, (n, 3), m, world, and their velocities relative to the second body, m/s."""
-        touches = touches_of(
-            self.shape, apart.p @ apart.R_other, apart.R_other.T @ apart.R, self.hull, tolerance
-        )
-        arms = np.array([touch.p_WC_W for touch in touches]).reshape(-1, 3) @ apart.R_other.T
-        arms = arms + self.rounding * apart.normal  # from the second hull to its surface
-        velocities = apart.v + np.cross(apart.w, arms - apart.p) - np.cross(apart.w_other, arms)
-        return apart.p_other + arms, velocities
+    def _touching(self, at: _Relative, tolerance: float) -> _Touching:
+        pairs = [pair.both for pair in self.pairs]
+        touches = touches_between(pairs, at.p @ at.R_other, at.R_other.T @ at.R, tolerance)
+        normals = np.array([touch.normal_W for touch in touches]).reshape(-1, 3) @ at.R_other.T
+        arms = np.array([touch.p_WC_W for touch in touches]).reshape(-1, 3) @ at.R_other.T
+        arms = arms + self.other.shape.rounding * normals  # from the second hull to its surface
+        velocities = at.v + np.cross(at.w, arms - at.p) - np.cross(at.w_other, arms)
+        return _Touching(at.p_other + arms, normals, velocities)

@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from contact_dynamics.errors import UndecidedError
+from contact_dynamics.tolerances import FLAT_HULL
 from contact_dynamics.validation import FloatArray
 
 _TRIALS: Final = 40
@@ -69,3 +70,26 @@ def hull_of(field: str, points: FloatArray) -> Hull:
         f"{field} must be points and directions that are either the same or clearly apart, got a convex hull "
         f"that hangs on rounding (Qhull gave up in {_TRIALS} rotations)"
     )
+
+
+def extreme_points(points: FloatArray) -> FloatArray:
+    """Return the corners, (c, 3), of the hull of points, (k, 3), which may be flat, in their order.
+
+    Points inside the hull, its faces and its edges are left out, also where rounding lifts them a little.
+    """
+    offsets = points - points.mean(axis=0)
+    _, spread, axes = np.linalg.svd(offsets, full_matrices=False)
+    axes = axes[spread > FLAT_HULL * np.linalg.norm(np.ptp(points, axis=0))]
+    if len(axes) == 0:
+        return points[:1]
+    local = offsets @ axes.T
+    if len(axes) == 1:
+        return points[sorted({int(local.argmin()), int(local.argmax())})]
+    hull = hull_of("vertices", local)
+    normals = hull.equations[:, :-1]
+    kept = [
+        i
+        for i in sorted(hull.vertices.tolist())
+        if np.linalg.svd(normals[(hull.simplices == i).any(axis=1)], compute_uv=False)[-1] > FLAT_HULL
+    ]
+    return points[kept]

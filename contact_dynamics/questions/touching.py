@@ -29,6 +29,7 @@ if TYPE_CHECKING:
     from contact_dynamics.questions.carried_surface import CarrierNoise
     from contact_dynamics.questions.subject import Subject
     from contact_dynamics.rigid_body.body import BodyState
+    from contact_dynamics.shapes.convex import ConvexShape
     from contact_dynamics.validation import FloatArray
     from contact_dynamics.world import Body, World
 
@@ -135,7 +136,8 @@ def outside_shape(
 ) -> tuple[str, ...]:
     """Return warnings of explicit contact points that are outside of the body's shape, or inside it.
 
-    A rim counts as the hull of some of its points, widened by what these leave out.
+    A rim counts as the hull of some of its points, widened by what these leave out. Points where two parts of
+    a shape touch count as on its surface.
 
     Args:
         body: The body. Without a shape it has no outside.
@@ -149,22 +151,8 @@ def outside_shape(
     if shape.is_empty:
         return ()
     numbers = range(len(points_W)) if numbers is None else numbers
-    features = features_of(shape)
     points_B = np.einsum("...j,...jk->...k", points_W - p_WB_W, R_WB)
-    away = np.arange(len(points_B))
-    gaps = np.zeros(len(points_B))  # negative inside the shape
-    if len(features.triangles) > 0:
-        levels = (features.normals @ features.corners.T).max(axis=1)
-        gaps = (points_B @ features.normals.T - levels).max(axis=1)
-        away = away[gaps > 0.0]
-        # Rounding puts half of the contacts just outside. On the way to its centre, the shape is so near.
-        center = features.corners.mean(axis=0)
-        depth = max(0.0, float((levels - features.normals @ center).min()))
-        near = gaps[away] / (gaps[away] + depth) * np.linalg.norm(points_B[away] - center, axis=1)
-        away = away[near > DISTANCE_TOLERANCE]
-    step = max(1, _PAIRS_AT_ONCE // max(1, len(features.triangles)))
-    for rows in (away[start : start + step] for start in range(0, len(away), step)):
-        gaps[rows] = np.linalg.norm(points_B[rows] - closest_points(features, points_B[rows]), axis=1)
+    gaps: FloatArray = np.min([_hull_gaps(part, points_B) for part in shape.convex_parts], axis=0)
     largest = max((rim.radius for rim in shape.rims), default=0.0)
     left_out = largest * (1.0 - math.cos(math.pi / RIM_CORNERS))
     gaps -= shape.rounding
@@ -206,6 +194,26 @@ def moves_into(
             f"at {approach[fastest]:.3g} m/s: the contacts there were not part of the impact"
         ),
     )
+
+
+def _hull_gaps(shape: ConvexShape, points_B: FloatArray) -> FloatArray:
+    """Return the distances, (n,), m, of points, (n, 3), from a shape's hull. They are negative inside."""
+    features = features_of(shape)
+    away = np.arange(len(points_B))
+    gaps = np.zeros(len(points_B))  # negative inside the shape
+    if len(features.triangles) > 0:
+        levels = (features.normals @ features.corners.T).max(axis=1)
+        gaps = (points_B @ features.normals.T - levels).max(axis=1)
+        away = away[gaps > 0.0]
+        # Rounding puts half of the contacts just outside. On the way to its centre, the shape is so near.
+        center = features.corners.mean(axis=0)
+        depth = max(0.0, float((levels - features.normals @ center).min()))
+        near = gaps[away] / (gaps[away] + depth) * np.linalg.norm(points_B[away] - center, axis=1)
+        away = away[near > DISTANCE_TOLERANCE]
+    step = max(1, _PAIRS_AT_ONCE // max(1, len(features.triangles)))
+    for rows in (away[start : start + step] for start in range(0, len(away), step)):
+        gaps[rows] = np.linalg.norm(points_B[rows] - closest_points(features, points_B[rows]), axis=1)
+    return gaps
 
 
 def flush_rim(body: Body, contacts: ContactSet) -> tuple[str, ...]:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Convex shapes of bodies and obstacles.
+"""Shapes of bodies and obstacles: convex ones, and unions of them.
 
 `convex` contains the shapes of bodies, from spheres to rounded polyhedra, with a function for each. An
 `obstacle` is a convex part of the world with edges and corners. `concavity` warns of corners that are not
@@ -19,6 +19,7 @@ from contact_dynamics.shapes.convex import (
     polyhedron,
     rounded,
     sphere,
+    union,
 )
 from contact_dynamics.shapes.obstacle import Obstacle
 from contact_dynamics.validation_types import check_types_of
@@ -36,6 +37,7 @@ __all__ = [
     "polyhedron",
     "rounded",
     "sphere",
+    "union",
 ]
 
 check_types_of(globals())

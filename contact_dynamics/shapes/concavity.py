@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Corners given for a convex shape may be those of a concave one. Then its hull is taken, with a warning.
 
+Convex parts instead (`convex.union`) keep the shape.
+
 A corner of a convex body is on its hull's surface: at a corner, on an edge, or in a face that a mesh divides.
 One that is clearly inside the hull shows that the body is concave. One in a face may be either: that of an
 L-bracket, whose inner corners are in the end faces of its hull, or that of a divided face. If the mass fills
@@ -20,10 +22,12 @@ import numpy as np
 
 from contact_dynamics.errors import ConcaveShapeWarning, UndecidedError, frames_to_caller
 from contact_dynamics.numerics.convex_hull import Hull, hull_of
+from contact_dynamics.rigid_body.inertia.triangle_mesh import connected_parts
+from contact_dynamics.shapes.convex import MAX_PARTS
 from contact_dynamics.tolerances import FLAT_HULL, INSIDE_HULL
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
+    from numpy.typing import ArrayLike, NDArray
 
     from contact_dynamics.rigid_body.body import MassProperties
     from contact_dynamics.validation import FloatArray
@@ -54,9 +58,24 @@ def warn_if_concave(
     if found:
         message = (
             f"{name}: {found}. Its convex hull is taken instead, which touches where the body does not. "
-            "If the hull is meant, give its corners alone"
+            "Give convex parts (shapes.union, or `parts` in a configuration), or the hull's corners alone"
         )
         warnings.warn(message, ConcaveShapeWarning, stacklevel=frames_to_caller())
+
+
+def parts_of_mesh(
+    name: str, vertices: FloatArray, triangles: ArrayLike
+) -> list[tuple[FloatArray, NDArray[np.int64]]]:
+    """Return the vertices and triangles of each part of a mesh (`connected_parts`).
+
+    Of more than `MAX_PARTS`, all are returned as one part, with a `ConcaveShapeWarning`.
+    """
+    parts = connected_parts(vertices, triangles)
+    if len(parts) <= MAX_PARTS:
+        return parts
+    message = f"{name} has {len(parts)} parts, more than {MAX_PARTS}. Its convex hull is taken instead"
+    warnings.warn(message, ConcaveShapeWarning, stacklevel=frames_to_caller())
+    return [(vertices, np.asarray(triangles))]
 
 
 def _concave_by(

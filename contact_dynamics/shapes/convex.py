@@ -8,7 +8,9 @@ method `moved` puts them elsewhere.
 
 `contact_dynamics.rigid_body.inertia` has their mass properties, with the same names and places.
 
-Not covered: shapes that are not convex, ellipsoids, meshes (give their corners to `polyhedron`).
+A shape that is not convex is a `union` of convex parts. A plane touches only the hull of the parts.
+
+Not covered: ellipsoids, meshes (give their corners to `polyhedron`).
 """
 
 from __future__ import annotations
@@ -18,7 +20,8 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 
 import numpy as np
 
-from contact_dynamics.errors import TooLargeError
+from contact_dynamics.errors import InvalidFieldError, TooLargeError
+from contact_dynamics.numerics.convex_hull import extreme_points
 from contact_dynamics.records import Record
 from contact_dynamics.rotations.one import rotation_matrix
 from contact_dynamics.tolerances import LARGEST_NUMBER
@@ -34,13 +37,18 @@ from contact_dynamics.validation import (
 )
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from numpy.typing import ArrayLike
 
 MAX_VERTICES: Final = 10_000
 """Longest list of vertices accepted. A convex shape with more should be simplified first."""
 
 MAX_RIMS: Final = 1_000
-"""Longest list of rims accepted. The shapes of this file have at most two."""
+"""Longest list of rims accepted. The convex shapes of this file have at most two."""
+
+MAX_PARTS: Final = 100
+"""Largest number of convex parts of a shape. Convex decompositions of meshes usually have at most 64."""
 
 
 class Rim(NamedTuple):
@@ -65,7 +73,7 @@ def _distinct(vertices: FloatArray) -> FloatArray:
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
 class ConvexShape(Record):
-    """Convex hull of points and circles, rounded by a ball that rolls over it.
+    """Convex hull of points and circles, rounded by a ball that rolls over it, or a `union` of such parts.
 
     Without points and circles it is empty.
 
@@ -74,26 +82,36 @@ class ConvexShape(Record):
             once, at their first position.
         rims: Circles in body axes.
         rounding: Radius of the ball, m, >= 0.
+        parts: Convex parts whose union the shape is. The other attributes are then those of their hull. A
+            convex shape has no parts.
 
     Raises:
-        InvalidFieldError: a number is not finite or beyond `LARGEST_NUMBER`, a radius is negative, or an axis
-            is not a unit vector.
-        TooLargeError: there are more than `MAX_VERTICES` vertices or `MAX_RIMS` rims.
+        InvalidFieldError: a number is not finite or beyond `LARGEST_NUMBER`, a radius is negative, an axis is
+            not a unit vector, the parts have different roundings, or vertices or rims are given beside parts.
+        TooLargeError: there are more than `MAX_VERTICES` vertices, `MAX_RIMS` rims or `MAX_PARTS` parts.
     """
 
     vertices: FloatArray = field(default_factory=lambda: np.zeros((0, 3)))
     rims: tuple[Rim, ...] = ()
     rounding: float = 0.0
+    parts: tuple[ConvexShape, ...] = ()
 
     if TYPE_CHECKING:
 
         def __init__(
-            self, *, vertices: ArrayLike = ..., rims: tuple[Rim, ...] = ..., rounding: float = ...
+            self,
+            *,
+            vertices: ArrayLike = ...,
+            rims: tuple[Rim, ...] = ...,
+            rounding: float = ...,
+            parts: tuple[ConvexShape, ...] = ...,
         ) -> None:
             """Take whatever NumPy makes arrays of."""
 
     def __post_init__(self) -> None:
-        """Check all fields."""
+        """Check all fields, and find the hull of parts."""
+        if self.parts:
+            self._take_hull()
         vertices = check_magnitude("vertices", check_array("vertices", self.vertices, (None, 3)))
         if len(vertices) > MAX_VERTICES:
             raise TooLargeError("vertices", f"{len(vertices)} vertices", f"at most {MAX_VERTICES}")
@@ -102,6 +120,26 @@ class ConvexShape(Record):
         object.__setattr__(self, "vertices", _distinct(vertices))
         object.__setattr__(self, "rims", tuple(_checked(*rim) for rim in self.rims))
         object.__setattr__(self, "rounding", check_within("rounding", self.rounding, 0.0, LARGEST_NUMBER))
+
+    def _take_hull(self) -> None:
+        if np.size(self.vertices) or self.rims or self.rounding:
+            raise InvalidFieldError("parts", "parts beside vertices, rims or a rounding", "parts alone")
+        if len(self.parts) > MAX_PARTS:
+            raise TooLargeError("parts", f"{len(self.parts)} parts", f"at most {MAX_PARTS}")
+        roundings = {part.rounding for part in self.parts}
+        if len(roundings) > 1:
+            found = f"roundings of {min(roundings):g} m and {max(roundings):g} m"
+            raise InvalidFieldError("parts", found, "parts of one rounding", "that of a ball is its radius")
+        rims = tuple(rim for part in self.parts for rim in part.rims)
+        vertices = _distinct(np.concatenate([part.vertices for part in self.parts]))
+        object.__setattr__(self, "vertices", vertices if rims else extreme_points(vertices))
+        object.__setattr__(self, "rims", rims)
+        object.__setattr__(self, "rounding", roundings.pop())
+
+    @property
+    def convex_parts(self) -> tuple[ConvexShape, ...]:
+        """The parts of the shape, or the shape itself if it is convex."""
+        return self.parts or (self,)
 
     @property
     def is_empty(self) -> bool:
@@ -122,6 +160,8 @@ class ConvexShape(Record):
         """
         shift = check_vector3("offset", offset)
         turn = check_unit("q", q, 4)
+        if self.parts:
+            return ConvexShape(parts=tuple(part.moved(shift, turn) for part in self.parts))
         R = np.eye(3) if turn[3] == 1.0 else rotation_matrix(turn)
         return ConvexShape(
             vertices=self.vertices @ R.T + shift,
@@ -189,7 +229,25 @@ def cone(radius: float, height: float) -> ConvexShape:
 
 def rounded(shape: ConvexShape, radius: float) -> ConvexShape:
     """Return the shape rounded by a ball of ``radius``, m, >= 0, which enlarges it by this on all sides."""
+    if shape.parts:
+        return union([rounded(part, radius) for part in shape.parts])
     return replace(shape, rounding=shape.rounding + check_within("radius", radius, 0.0, LARGEST_NUMBER))
+
+
+def union(shapes: Sequence[ConvexShape]) -> ConvexShape:
+    """Return the union of shapes in one frame, such as the head and the handle of a hammer.
+
+    `ConvexShape.moved` places each shape. They may touch or overlap, or be apart. Contacts with obstacles and
+    other bodies are those of the parts. A plane touches only the hull of the parts, so contacts with planes,
+    and tosses, depend on the hull alone.
+
+    Raises:
+        InvalidFieldError: the shapes have different roundings, which a common hull cannot have. The rounding
+            of a sphere and a capsule is the radius.
+        TooLargeError: there are more than `MAX_PARTS` convex parts.
+    """
+    parts = tuple(part for shape in shapes for part in shape.convex_parts if not part.is_empty)
+    return ConvexShape(parts=parts) if len(parts) > 1 else next(iter(parts), NO_SHAPE)
 
 
 _Z: Final = (0.0, 0.0, 1.0)

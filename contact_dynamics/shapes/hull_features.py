@@ -24,8 +24,8 @@ if TYPE_CHECKING:
 
 RIM_CORNERS: Final = 32
 
-_KEPT: Final = 64
-"""Number of shapes whose features are remembered."""
+_KEPT: Final = 256
+"""Number of convex shapes whose features are remembered, enough for two bodies of `MAX_PARTS` parts."""
 
 
 class Features(NamedTuple):

@@ -33,7 +33,7 @@ def with_distinct_corners(body: Body) -> tuple[Body, tuple[int, ...]]:
     kept = tuple(i for i in range(len(vertices)) if i not in dropped)
     if not dropped:
         return body, kept
-    shape = replace(body.shape, vertices=vertices[list(kept)])
+    shape = replace(body.shape, vertices=vertices[list(kept)], parts=())
     return replace(body, vertices_B=np.zeros((0, 3)), shape=shape), kept
 
 

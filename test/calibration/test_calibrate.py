@@ -18,7 +18,7 @@ from contact_dynamics.calibration.observed import observe
 from contact_dynamics.errors import InvalidFieldError, NotSupportedError
 from contact_dynamics.measured.motion import COLUMNS
 from contact_dynamics.rigid_body.body import MassProperties
-from contact_dynamics.shapes import box, cylinder
+from contact_dynamics.shapes import box, cylinder, union
 
 TRUTH = Truth()
 NOISY = Truth(law_velocity=0.01, law_spin=0.1)
@@ -205,9 +205,11 @@ def test_a_surface_that_is_not_flat_is_recognised() -> None:
 
 
 def test_a_body_without_corners_is_refused() -> None:
-    body = replace(BRICK, shape=cylinder(radius=0.05, length=0.1), vertices_B=np.zeros((0, 3)))
-    with pytest.raises(NotSupportedError, match="rims of a round shape"):
-        Model(body, [FLOOR])
+    parts = union([box(0.1, 0.1, 0.1), box(0.1, 0.1, 0.1).moved([0.1, 0.1, 0])])
+    for shape, found in ((cylinder(0.05, 0.1), "rims of a round shape"), (parts, "several parts")):
+        body = replace(BRICK, shape=shape, vertices_B=np.zeros((0, 3)))
+        with pytest.raises(NotSupportedError, match=found):
+            Model(body, [FLOOR])
 
 
 def test_states_of_two_bodies_are_refused() -> None:

@@ -11,7 +11,7 @@ from scipy.spatial import cKDTree
 from scipy.spatial.transform import Rotation
 
 from contact_dynamics.diagrams.shape import NO_SIZE, Shape, convex_shape, drawn_shape
-from contact_dynamics.shapes.convex import NO_SHAPE, box, capsule, cone, cylinder, rounded, sphere
+from contact_dynamics.shapes.convex import NO_SHAPE, box, capsule, cone, cylinder, rounded, sphere, union
 from contact_dynamics.validation import FloatArray
 from contact_dynamics.world import box_vertices
 
@@ -35,6 +35,14 @@ def test_a_turned_box_has_its_edges_area_and_volume(sides: tuple[float, float, f
     np.testing.assert_allclose(np.linalg.norm(areas, axis=1).sum(), 2 * (x * y + y * z + z * x), rtol=1e-9)
     volume = np.einsum("ij,ij->", areas, shape.triangles_B.mean(axis=1)) / 3.0  # divergence theorem
     np.testing.assert_allclose(volume, x * y * z, rtol=1e-9)
+
+
+def test_a_union_is_drawn_as_all_its_parts() -> None:
+    shape = drawn_shape(union([box(0.3, 0.1, 0.05), box(0.05, 0.1, 0.2).moved([0, 0, 0.125])]))
+    volume = np.einsum("ij,ij->", area_vectors(shape), shape.triangles_B.mean(axis=1)) / 3.0
+    assert volume == pytest.approx(0.3 * 0.1 * 0.05 + 0.05 * 0.1 * 0.2, rel=1e-12)
+    assert len(shape.edges_B) == 24
+    assert shape.size == pytest.approx(math.hypot(0.3, 0.1, 0.25), rel=1e-12)
 
 
 @given(count=st.integers(4, 60), seed=SEEDS)

@@ -195,5 +195,7 @@ CALLS_WITH_CONTACTS: Calls = {
     ),
     "Body": (Body, {"name": "box", "mass_properties": BALL, "p_FB_F": [0.0, 0.0, 0.1], "shape": BOX.shape}),
     "Body.of": (Body.of, {"name": "box", "mass": HAMMER, "vertices_F": shapes.box_vertices((0.2, 0.2, 0.2))}),
+    "Body.union": (Body.union, {"parts": [BOX, BOX], "name": "two"}),
+    "Body.placed": (BOX.placed, {"p_GF_G": [0.1, 0.2, 0.3], "q_GF": [0.0, 0.0, 0.0, 1.0]}),
     "World.body": (WORLD.body, {"name": "box"}),
 }

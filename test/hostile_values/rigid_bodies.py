@@ -84,6 +84,7 @@ RIGID_BODIES: Calls = {
     "shapes.polyhedron": (shapes.polyhedron, {"vertices": TETRAHEDRON}),
     "shapes.polygon": (shapes.polygon, {"outline": [[0.0, 0.0], [0.2, 0.0], [0.0, 0.2]]}),
     "shapes.rounded": (shapes.rounded, {"shape": shapes.box(size=[0.1, 0.2, 0.3]), "radius": 0.01}),
+    "shapes.union": (shapes.union, {"shapes": [shapes.box([0.1, 0.2, 0.3]), shapes.cone(0.1, 0.2)]}),
     "inertia.mesh": (inertia.mesh, {"p_FV_F": TETRAHEDRON, "triangles": OUTWARD, "mass": 1.0}),
     "inertia.particles": (inertia.particles, {"masses": [1.0, 2.0, 3.0, 1.0], "p_FP_F": TETRAHEDRON}),
     "inertia.plate": (inertia.plate, {"size": [0.1, 0.2], "mass": 1.0}),

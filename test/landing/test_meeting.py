@@ -13,7 +13,7 @@ from scipy.spatial.transform import Rotation
 import contact_dynamics as cd
 from contact_dynamics.errors import InvalidFieldError, NoShapeError, NotSupportedError
 from contact_dynamics.impact import bodies_impact, spatial_pair_impact
-from contact_dynamics.shapes import box, rounded
+from contact_dynamics.shapes import ConvexShape, box, polyhedron, rounded, union
 from oracles.hull_distance import distance
 from sweeps import seeds
 
@@ -178,3 +178,78 @@ def test_what_cannot_meet_is_refused_by_name() -> None:
     bare = cd.Body(name="large", mass_properties=LARGE.mass_properties)
     with pytest.raises(NoShapeError, match="body 'large' must have"):
         cd.next_meeting(SMALL, here, bare, there, **PAIR)
+
+
+def u_shape(*, upside_down: bool = False) -> ConvexShape:
+    """Two legs, 0.1 m wide and 0.4 m long, 0.3 m apart, on a base 0.1 m thick that begins at z = 0."""
+    base = box(0.5, 0.2, 0.1).moved([0, 0, 0.05])
+    legs = [box(0.1, 0.2, 0.4).moved([x, 0, 0.3]) for x in (-0.2, 0.2)]
+    return union([base, *legs]).moved([0, 0, 0], [1, 0, 0, 0] if upside_down else [0, 0, 0, 1])
+
+
+def of_shape(shape: ConvexShape, name: str = "body") -> cd.Body:
+    return cd.Body(name=name, mass_properties=cd.MassProperties(mass=1.0, I_B=np.eye(3) * 0.02), shape=shape)
+
+
+def test_two_u_shapes_interlock() -> None:
+    """Each has a leg in the other's slot, 0.25 m to the side. Both legs come down on the bases together."""
+    lower, upper = of_shape(u_shape(), "lower"), of_shape(u_shape(upside_down=True), "upper")
+    resting, sinking = at([0, 0, 0], [0, 0, 0]), at([0.25, 0, 1.1], [0, 0, -0.5])
+    meeting = cd.next_meeting(upper, sinking, lower, resting, **PAIR)
+    assert meeting is not None
+    assert meeting.seconds == pytest.approx((1.1 - 0.6) / 0.5, rel=1e-14)
+    fall = 0.5 * G * meeting.seconds**2
+    np.testing.assert_allclose(meeting.contacts.normals_W, [[0, 0, 1]] * 8, atol=1e-12)
+    points = sorted(np.add(meeting.contacts.p_WC_W, [0, 0, fall]).round(9).tolist())
+    tips = [[x, y, 0.1] for x in (0.0, 0.1) for y in (-0.1, 0.1)]
+    assert points == sorted(tips + [[x, y, 0.5] for x in (0.15, 0.25) for y in (-0.1, 0.1)])
+    hulls = [of_shape(polyhedron(each.vertices_B)) for each in (upper, lower)]
+    earlier = cd.next_meeting(hulls[0], sinking, hulls[1], resting, **PAIR)
+    assert earlier is not None
+    assert earlier.seconds == pytest.approx((1.1 - 1.0) / 0.5, rel=1e-14)
+    # The slot leaves a leg 0.05 m on one side and 0.15 m on the other.
+    for speed, seconds in ((-0.1, 0.5), (0.1, 1.5)):
+        aside = cd.next_meeting(
+            upper, at([0.25, 0, 0.7], [0, 0, 0]), lower, at([0, 0, 0], [speed, 0, 0]), **PAIR
+        )
+        assert aside is not None
+        assert aside.seconds == pytest.approx(seconds, rel=1e-14)
+        np.testing.assert_allclose(np.abs(aside.contacts.normals_W[:, 0]), 1.0, atol=1e-12)
+
+
+@seeds(range(6), slow=range(6, 300))
+def test_divided_bodies_meet_as_whole_ones(seed: int) -> None:
+    """Also at seams, which meet in every third draw, and in any order of the parts and the bodies."""
+    rng = np.random.default_rng(seed)
+    whole, parts = box(0.4, 0.2, 0.1), [box(0.2, 0.2, 0.1).moved([x, 0, 0]) for x in (-0.1, 0.1)]
+    still = 0 if seed % 3 == 0 else 1
+    q = Rotation.random(2, random_state=seed).as_quat() if still else [[0, 0, 0, 1]] * 2
+    states = [
+        cd.BodyState(
+            p_WB_W=[x, *(still * rng.uniform(-0.1, 0.1, 2))],
+            q_WB=turn,
+            v_WB_W=[-2 * x, 0, 0],
+            w_WB_W=still * rng.normal(size=3),
+        )
+        for x, turn in zip((-1, 1), q, strict=True)
+    ]
+
+    def meets(one: ConvexShape, other: ConvexShape, *, swapped: bool = False) -> cd.Meeting | None:
+        pairs = [(of_shape(one), states[0]), (of_shape(other), states[1])]
+        (body, state), (second, second_state) = pairs[::-1] if swapped else pairs
+        return cd.next_meeting(body, state, second, second_state, horizon=1.0, **PAIR)
+
+    expected = meets(whole, whole)
+    for shapes in ((union(parts), whole), (whole, union(parts)), (union(parts), union(parts[::-1]))):
+        for swapped in (False, True):
+            found = meets(*shapes, swapped=swapped)
+            assert (found is None) == (expected is None)
+            if found is None or expected is None:
+                continue
+            assert found.seconds == pytest.approx(expected.seconds, abs=1e-9)
+            points = [sorted(each.contacts.p_WC_W.round(6).tolist()) for each in (found, expected)]
+            np.testing.assert_allclose(*points, atol=2e-6)
+            sign = -1.0 if swapped else 1.0
+            np.testing.assert_allclose(
+                sign * found.contacts.normals_W[0], expected.contacts.normals_W[0], atol=1e-6
+            )

@@ -20,6 +20,7 @@ from contact_dynamics.questions.context import Context, Problem
 from contact_dynamics.questions.impact_question import ImpactQuestion, InTime
 from contact_dynamics.questions.many import ManyImpactsQuestion, ManyStates
 from contact_dynamics.questions.many_contact_modes import ManyContactModesQuestion
+from contact_dynamics.questions.touching import outside_shape
 from contact_dynamics.shapes import box, capsule, cylinder, polyhedron, sphere
 from contact_dynamics.shapes.convex import ConvexShape
 from contact_dynamics.tolerances import DISTANCE_TOLERANCE
@@ -238,6 +239,18 @@ def test_contacts_that_are_taken_as_flush_warn_where_the_verdict_is_undecided_ot
         assert answer.undecided == ""
         assert len(answer.warnings) == count
         assert all(one.startswith("contacts are taken as flush to within 0.0001") for one in answer.warnings)
+
+
+def test_a_contact_in_the_notch_of_a_body_is_outside_of_its_shape() -> None:
+    bar, post = Body.box((0.3, 0.1, 0.1), 1.0), Body.box((0.1, 0.1, 0.3), 1.0)
+    bracket = Body.union([bar, post.placed([-0.1, 0, 0.2])])
+    shown = [[0.0, 0.0, 0.07], [0.0, 0.0, 0.05], [-0.05, 0.0, 0.2], [0.1, 0.0, 0.35], [-0.1, 0.0, 0.0]]
+    found = outside_shape(bracket, points_W=np.array(shown), p_WB_W=bracket.p_FB_F, R_WB=np.eye(3))
+    assert [each.split(" of the shape")[0] for each in found] == [
+        "contact 0 is 0.02 m outside",
+        "contact 3 is 0.15 m outside",
+        "contact 4 is 0.05 m inside the shape of 'union'",
+    ]
 
 
 def test_a_batch_of_impacts_warns_of_contacts_outside_of_the_shape() -> None:

@@ -146,7 +146,8 @@ class _Parts:
 
     @classmethod
     def of(cls, p_FV_F: FloatArray, surface: ClosedSurface) -> _Parts:
-        labels = _labels(surface)
+        one, other = surface.neighbors.T
+        labels = _labels(one, other, len(surface.triangles))
         corners = p_FV_F[surface.triangles]
         sizes = np.bincount(labels)
         # Each part is measured from its own middle, so that a small one far away keeps its digits.
@@ -182,13 +183,34 @@ class _Parts:
         return _winding_number(others, _point_inside(self.corners[is_own], self.corners[near], inwards))
 
 
-def _labels(surface: ClosedSurface) -> NDArray[np.int64]:
-    """Return the number, (m,), of the part to which each triangle belongs."""
+def connected_parts(p_FV_F: FloatArray, triangles: ArrayLike) -> list[tuple[FloatArray, NDArray[np.int64]]]:
+    """Return the vertices, (k, 3), and triangles, (t, 3), of each part of a closed mesh.
+
+    Parts have no edge in common. An open mesh has one part, since its triangles may belong together without
+    sharing corners.
+
+    Raises:
+        InvalidFieldError: the triangles are not (m, 3) indices of vertices, or all of them are degenerate.
+    """
+    indices = _check_indices(triangles, len(p_FV_F))
+    edges = _Edges.of(indices)
+    if (edges.counts == 1).any():
+        edges = _Edges.of(_same_places(p_FV_F)[indices])
+    if (edges.counts == 1).any():
+        return [(p_FV_F, indices)]
+    first = edges.owners[np.repeat(edges.starts, edges.counts)]
+    labels = _labels(first, edges.owners, len(edges.triangles))
+    found = [
+        np.unique(edges.triangles[labels == part], return_inverse=True) for part in range(labels.max() + 1)
+    ]
+    return [(p_FV_F[used], corners.reshape(-1, 3).astype(np.int64)) for used, corners in found]
+
+
+def _labels(one: NDArray[np.int64], other: NDArray[np.int64], size: int) -> NDArray[np.int64]:
+    """Return the number, (m,), of the part to which each triangle belongs, from neighbours among them."""
     from scipy.sparse import coo_matrix
     from scipy.sparse.csgraph import connected_components
 
-    size = len(surface.triangles)
-    one, other = surface.neighbors.T
     graph = coo_matrix((np.ones(len(one), dtype=np.int8), (one, other)), shape=(size, size))
     labels: NDArray[np.int64] = connected_components(graph, directed=False)[1].astype(np.int64)
     return labels
