@@ -25,6 +25,7 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 
 import numpy as np
 
+from contact_dynamics.contact.pairs import pair_jacobians
 from contact_dynamics.contact.touches import flat_touches
 from contact_dynamics.contact.velocities import relative_velocities
 from contact_dynamics.numerics.vectors import point_jacobians, tangent_rows
@@ -36,6 +37,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from contact_dynamics.contact.contact import ContactSet
+    from contact_dynamics.contact.pairs import Pairs
     from contact_dynamics.rigid_body.body import BodyState
     from contact_dynamics.shapes.obstacle import Obstacle
     from contact_dynamics.validation import FloatArray
@@ -158,6 +160,46 @@ def resting(noisy: NoisyState, contacts: ContactSet, *, velocity_tolerance: floa
                 may_hold.append(i)
                 held.append(([i], axes))
     return settled(found, held)
+
+
+def resting_bodies(
+    states: Sequence[BodyState],
+    covariances: Sequence[FloatArray | None],
+    contacts: ContactSet,
+    pairs: Pairs,
+    *,
+    velocity_tolerance: float,
+) -> tuple[BodyState, ...] | None:
+    """Return the likeliest states of several bodies in which all their contacts rest, or None if none passes.
+
+    Covariances, (12, 12), are those of the states, or None for exact ones. Only velocities are corrected.
+    """
+    from scipy.special import chdtri
+
+    jacobians = pair_jacobians(states, contacts.p_WC_W, pairs).reshape(-1, 6 * len(states))
+    velocities = np.concatenate([[*state.v_WB_W, *state.w_WB_W] for state in states])
+    moving = 0.0 if contacts.surface_velocities_W is None else contacts.surface_velocities_W.ravel()
+    violation = jacobians @ velocities - moving
+    if float(np.abs(violation).max()) <= velocity_tolerance:
+        return tuple(states)
+    noise = np.zeros((len(velocities), len(velocities)))
+    for i, covariance in enumerate(covariances):
+        if covariance is not None:
+            noise[6 * i : 6 * i + 6, 6 * i : 6 * i + 6] = covariance[6:, 6:]
+    variances, axes = np.linalg.eigh(noise)
+    root = axes * np.sqrt(np.maximum(variances, 0.0))
+    U, sizes, V = np.linalg.svd(jacobians @ root, full_matrices=False)
+    kept = sizes > NO_NOISE * sizes.max()
+    components = (U.T[kept] @ violation) / sizes[kept]
+    error = root @ (V[kept].T @ components)
+    unexplained = float(np.abs(violation - jacobians @ error).max())
+    limit = float(chdtri(len(components), 1.0 - REST_LEVEL))
+    if unexplained > max(velocity_tolerance, NO_NOISE * float(np.abs(violation).max())) or not (
+        components @ components <= limit
+    ):
+        return None
+    rest = (velocities - error).reshape(-1, 2, 3)
+    return tuple(state.with_velocities(*both) for state, both in zip(states, rest, strict=True))
 
 
 def possible_motions(

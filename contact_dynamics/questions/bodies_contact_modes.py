@@ -3,12 +3,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
 from contact_dynamics.contact.contact import ContactSet
+from contact_dynamics.contact.noise import resting_bodies
 from contact_dynamics.contact.pairs import check_pairs, seconds_apart
 from contact_dynamics.contact_modes import BodiesContactProblem, BodiesMode, ModeVerdict, contact_modes
 from contact_dynamics.contact_modes.planar.problem import MAX_PLANAR_CONTACTS
@@ -33,6 +34,11 @@ if TYPE_CHECKING:
 
 MAX_BODIES: Final = 32  # largest number of bodies in one question, as of contacts (`MAX_DYNAMIC_CONTACTS`)
 
+_AS_MEASURED: Final = (
+    "the velocities are those measured, since their noise does not explain them as rest of all contacts: a "
+    "contact is at rest only if it is slower than velocity_tolerance"
+)
+
 _APART: Final = "the states differ in time by {:.3g} ms, which matters if the bodies move"
 
 
@@ -43,7 +49,8 @@ class BodiesContactModeQuestion(Question["BodiesContactModeAnswer"]):
     Attributes:
         bodies: Each a body, or the name of a body of the context's world.
         states: State of each body, or a reference to a published state. The default is the latest published
-            state of each, at the time of the oldest of these. Covariances have no effect.
+            state of each, at the time of the oldest of these. If states have covariances, a chi-square test
+            at the 99.9 % confidence level determines whether all contacts may rest.
         contacts: Contacts of all bodies, as in `BodiesContactProblem`.
         pairs: For each contact, the body into which its normal points, and the other body, or None for the
             world. They are indices into ``bodies``.
@@ -120,7 +127,8 @@ class BodiesContactModeAnswer(Answer):
         undecided_modes: Modes for which it is undecided whether they are consistent.
         velocity_tolerance: m/s, tolerance that was used.
         warnings: Texts about limited validity: a contact outside a body's shape, contacts treated as flush
-            because the verdict would otherwise be undecided, or states of different times.
+            because the verdict would otherwise be undecided, states of different times, or measured
+            velocities that noise does not explain as rest.
     """
 
     bodies: tuple[NamedState, ...]
@@ -171,6 +179,17 @@ def answer(question: BodiesContactModeQuestion, context: Context | None = None) 
             raise type(error)(f"body {i}: {error.field}", error.found, error.allowed, error.hint) from None
         subjects.append(subject)
         forces_W.append(force_W)
+    states = [subject.state for subject in subjects]
+    tolerance = or_default(question.velocity_tolerance, known.defaults.velocity_tolerance)
+    resting = resting_bodies(
+        states,
+        [subject.covariance for subject in subjects],
+        contacts,
+        question.pairs,
+        velocity_tolerance=tolerance,
+    )
+    is_measured = any(subject.covariance is not None for subject in subjects)
+    subjects = [replace(one, state=state) for one, state in zip(subjects, resting or states, strict=True)]
     found = contact_modes(
         BodiesContactProblem(
             bodies=[subject.body.mass_properties for subject in subjects],
@@ -179,7 +198,7 @@ def answer(question: BodiesContactModeQuestion, context: Context | None = None) 
             pairs=question.pairs,
             forces_W=forces_W,
             torques_W=question.torques_W,
-            velocity_tolerance=or_default(question.velocity_tolerance, known.defaults.velocity_tolerance),
+            velocity_tolerance=tolerance,
         )
     )
     apart = seconds_apart([subject.state for subject in subjects])
@@ -198,6 +217,7 @@ def answer(question: BodiesContactModeQuestion, context: Context | None = None) 
         velocity_tolerance=found.velocity_tolerance,
         warnings=(
             *([_APART.format(1e3 * apart)] if apart > STATES_APART else []),
+            *([_AS_MEASURED] if is_measured and resting is None else []),
             *([TAKEN_AS_FLUSH] if found.flush_within > FLUSH else []),
             *(text for i, subject in enumerate(subjects) for text in _outside(question, i, subject, known)),
         ),

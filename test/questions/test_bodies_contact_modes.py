@@ -125,10 +125,39 @@ def test_without_gravity_nothing_presses() -> None:
     assert not found.modes[0].contact_forces_W.any()
 
 
-def test_a_covariance_has_no_effect() -> None:
-    noisy = [UncertainState(state=state, covariance=1e-6 * np.eye(12)) for state in STATES]
-    found = ask(BodiesContactModeQuestion(**STACK, states=noisy), Context(world=WORLD))
-    assert same(found, ask(BodiesContactModeQuestion(**STACK, states=STATES), Context(world=WORLD)))
+NOISE = np.repeat([1e-4, 1e-3, 0.01, 0.05], 3)  # m, rad, m/s and rad/s along each axis
+
+
+def measured(state: BodyState, chance: np.random.Generator) -> UncertainState:
+    """The pose is exact, since the contacts are explicit."""
+    v_W, w_W = (NOISE[6:] * chance.normal(size=6)).reshape(2, 3)
+    noisy = state.with_velocities(state.v_WB_W + v_W, state.w_WB_W + w_W)
+    return UncertainState(state=noisy, covariance=np.diag(NOISE**2))
+
+
+def test_a_measured_stack_at_rest_rests_within_its_noise() -> None:
+    """Of 200 draws, one in a thousand may fail. Without the covariances no draw is at rest."""
+    chance, known = np.random.default_rng(4), Context(world=WORLD)
+    for _ in range(200):
+        states = [measured(state, chance) for state in STATES]
+        found = ask(BodiesContactModeQuestion(**STACK, states=states), known)
+        assert [mode.mode for mode in found.modes] == ["ffffffff"]
+        assert found.warnings == ()
+    exact = [state.state for state in states]
+    assert ask(BodiesContactModeQuestion(**STACK, states=exact), known).verdict.name != "UNIQUE"
+
+
+def test_a_stack_that_slides_is_not_at_rest_within_its_noise_and_says_that_it_is_as_measured() -> None:
+    chance, known = np.random.default_rng(4), Context(world=WORLD)
+    moving = (STATES[0], STATES[1].with_velocities([0.2, 0.0, 0.0], [0.0, 0.0, 0.0]))
+    found = ask(BodiesContactModeQuestion(**STACK, states=[measured(each, chance) for each in moving]), known)
+    assert "ffffffff" not in {mode.mode for mode in found.modes}
+    (warning,) = found.warnings
+    assert warning.startswith("the velocities are those measured, since their noise does not explain them")
+    # Exact states of which one has a covariance are taken as they are.
+    states = [UncertainState(state=STATES[0], covariance=np.diag(NOISE**2)), moving[1]]
+    slides = ask(BodiesContactModeQuestion(**STACK, states=states), known)
+    assert same(slides.modes, ask(BodiesContactModeQuestion(**STACK, states=moving), known).modes)
 
 
 def test_a_contact_off_the_shape_of_either_body_has_a_warning_with_its_number() -> None:
