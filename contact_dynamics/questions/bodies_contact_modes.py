@@ -20,7 +20,7 @@ from contact_dynamics.questions.context import Context, check_optional, or_defau
 from contact_dynamics.questions.extent import check_contacts, check_extent, check_wrench
 from contact_dynamics.questions.services import Answer, Question
 from contact_dynamics.questions.subject import NEWEST, NamedState, StateSource, at_one_time, subject_of
-from contact_dynamics.questions.touching import outside_shape
+from contact_dynamics.questions.touching import outside_shape, without_contacts
 from contact_dynamics.tolerances import FLUSH, STATES_APART
 from contact_dynamics.validation import FloatArray, check_array
 from contact_dynamics.world import Body
@@ -126,9 +126,9 @@ class BodiesContactModeAnswer(Answer):
         undecided: The undecided cases and the reason. Empty unless the verdict is UNDECIDED.
         undecided_modes: Modes for which it is undecided whether they are consistent.
         velocity_tolerance: m/s, tolerance that was used.
-        warnings: Texts about limited validity: a contact outside a body's shape, contacts treated as flush
-            because the verdict would otherwise be undecided, states of different times, or measured
-            velocities that noise does not explain as rest.
+        warnings: Texts about limited validity: a contact outside a body's shape, a surface of the world that
+            a body touches without a contact, contacts treated as flush because the verdict would otherwise be
+            undecided, states of different times, or measured velocities that noise does not explain as rest.
     """
 
     bodies: tuple[NamedState, ...]
@@ -227,14 +227,19 @@ def answer(question: BodiesContactModeQuestion, context: Context | None = None) 
 def _outside(
     question: BodiesContactModeQuestion, index: int, subject: Subject, known: Context
 ) -> tuple[str, ...]:
-    """Return warnings of contacts of one body that are outside of its shape, or inside it."""
+    """Return warnings of contacts of one body outside of its shape, or inside it, and of those left out."""
     own = [i for i, pair in enumerate(question.pairs) if index in pair]
-    state = subject.state
-    return outside_shape(
+    with_world = [i for i, pair in enumerate(question.pairs) if tuple(pair) == (index, None)]
+    state, tolerance = subject.state, known.defaults.distance_tolerance
+    outside = outside_shape(
         subject.body,
         points_W=question.contacts.p_WC_W[own],
         p_WB_W=state.p_WB_W,
         R_WB=state.R_WB,
-        distance_tolerance=known.defaults.distance_tolerance,
+        distance_tolerance=tolerance,
         numbers=own,
+    )
+    normals_W = question.contacts.normals_W[with_world]
+    return outside + without_contacts(
+        subject.body, state, known.world, normals_W, distance_tolerance=tolerance
     )

@@ -56,7 +56,7 @@ from contact_dynamics.questions.settled_impact import (
     settled_in_space,
 )
 from contact_dynamics.questions.subject import NEWEST, StateSource, covariance_of, subject_of
-from contact_dynamics.questions.touching import flush_rim, in_contact, outside_shape
+from contact_dynamics.questions.touching import flush_rim, in_contact, outside_shape, without_contacts
 from contact_dynamics.rigid_body.body import BodyState
 from contact_dynamics.tolerances import FLUSH, FLUSH_ROUGHLY
 from contact_dynamics.validation import FloatArray, check_array, check_positive, check_whole
@@ -255,9 +255,10 @@ class ContactModeAnswer(Answer):
         friction_facets: Number of edges of each friction pyramid in statics, or zero for a planar problem.
         wrench_facets: Number of edges of each friction pyramid in the wrench sets of spatial problems, or
             zero if not requested.
-        warnings: Texts about limited validity: a contact outside the body's shape, contacts treated as flush
-            because the verdict would otherwise be undecided, margins that are NaN, margins in a plane that
-            was chosen from the load, or a flush rim that is represented by a few points.
+        warnings: Texts about limited validity: a contact outside the body's shape, a surface that the body
+            touches without an explicit contact, contacts treated as flush because the verdict would otherwise
+            be undecided, margins that are NaN, margins in a plane that was chosen from the load, or a flush
+            rim that is represented by a few points.
     """
 
     body_name: str
@@ -316,6 +317,9 @@ def answer(question: ContactModeQuestion, context: Context | None = None) -> Con
             p_WB_W=state.p_WB_W,
             R_WB=state.R_WB,
             distance_tolerance=case.distance_tolerance,
+        )
+        doubts += without_contacts(
+            body, state, known.world, contacts.normals_W, distance_tolerance=case.distance_tolerance
         )
     else:
         at_rest = [mode.mode for mode in found.modes] == [STICKS * len(contacts)]

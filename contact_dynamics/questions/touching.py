@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from contact_dynamics.contact.found import contacts_within, find_contacts, nearest_surface
+from contact_dynamics.contact.found import NO_CONTACTS, contacts_within, find_contacts, nearest_surface
 from contact_dynamics.contact.noise import NoisyState, resting, touching
 from contact_dynamics.contact.touches import RIM_POINTS
 from contact_dynamics.contact.velocities import relative_velocities
@@ -35,6 +35,9 @@ if TYPE_CHECKING:
 
 _FAR: Final = 6.0
 """Standard deviations of the distance beyond which a body does not touch a carried plane."""
+
+_SAME_SIDE: Final = 0.99
+"""Cosine of the angle between normals from which on a given contact counts as one with a surface."""
 
 _PAIRS_AT_ONCE: Final = 100_000
 """Points times triangles whose distances are worked out together, in some 50 MB."""
@@ -173,15 +176,22 @@ def outside_shape(
     return tuple(warnings)
 
 
+def without_contacts(
+    body: Body, state: BodyState, world: World, normals_W: FloatArray, *, distance_tolerance: float
+) -> tuple[str, ...]:
+    """Return warnings of surfaces that a body touches, along whose normals no contact is given, (n, 3)."""
+    touched = _touched(body, state, world, distance_tolerance)
+    missing = (touched.normals_W @ normals_W.T).max(axis=1, initial=-1.0) < _SAME_SIDE
+    names = dict.fromkeys(np.array(touched.surfaces, dtype=object)[missing])
+    return tuple(f"{body.name!r} touches {name!r}, where no contact is given" for name in names)
+
+
 def moves_into(
     body: Body, state: BodyState, world: World, *, distance_tolerance: float, velocity_tolerance: float
 ) -> tuple[str, ...]:
     """Return a warning if a body that touches a surface of the world moves into it after an impact."""
-    contacts = None
-    if not body.shape.is_empty:
-        with suppress(NotSupportedError):  # a rim at the edge of an obstacle
-            contacts = contacts_within(body, state, world.surfaces, distance_tolerance)
-    if not contacts:
+    contacts = _touched(body, state, world, distance_tolerance)
+    if len(contacts) == 0:
         return ()
     velocities = relative_velocities(state, contacts)
     approach = -np.einsum("ij,ij->i", velocities, contacts.normals_W)
@@ -214,6 +224,14 @@ def _hull_gaps(shape: ConvexShape, points_B: FloatArray) -> FloatArray:
     for rows in (away[start : start + step] for start in range(0, len(away), step)):
         gaps[rows] = np.linalg.norm(points_B[rows] - closest_points(features, points_B[rows]), axis=1)
     return gaps
+
+
+def _touched(body: Body, state: BodyState, world: World, distance_tolerance: float) -> ContactSet:
+    """Return the contacts of a body with the world, without those of a rim at the edge of an obstacle."""
+    if not body.shape.is_empty:
+        with suppress(NotSupportedError):
+            return contacts_within(body, state, world.surfaces, distance_tolerance)
+    return NO_CONTACTS
 
 
 def flush_rim(body: Body, contacts: ContactSet) -> tuple[str, ...]:

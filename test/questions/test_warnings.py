@@ -12,9 +12,11 @@ import pytest
 from contact_dynamics import Body, BodyState, ContactSet, MassProperties, Surface, World
 from contact_dynamics.impact import RestitutionLaw, SeveralContactsLaw, outcomes_over_orders
 from contact_dynamics.plane.projection import PlaneOfMotion
+from contact_dynamics.questions import bodies_contact_modes as bodies_questions
 from contact_dynamics.questions import contact_modes as modes_questions
 from contact_dynamics.questions import impact as impact_questions
 from contact_dynamics.questions import many, many_contact_modes
+from contact_dynamics.questions.bodies_contact_modes import BodiesContactModeQuestion
 from contact_dynamics.questions.contact_modes import ContactModeQuestion
 from contact_dynamics.questions.context import Context, Problem
 from contact_dynamics.questions.impact_question import ImpactQuestion, InTime
@@ -109,6 +111,32 @@ def test_an_impact_at_one_of_the_contacts_is_a_warning() -> None:
     one = ContactSet(p_WC_W=[[0.05, 0, 0.1]], normals_W=[-1, 0, 0], frictions=0.0, restitutions=0.5)
     (warning,) = impact_questions.answer(replace(every, contacts=one), known).warnings
     assert warning.startswith("after the impact, 'cube' moves into 'wall', which it touches, at ")
+
+
+def test_a_surface_that_the_body_touches_without_a_contact_is_a_warning() -> None:
+    """A finger pushes a cube on the floor, whose contact the question leaves out: the cube would fall."""
+    finger = ContactSet(p_WC_W=[[-0.05, 0, 0.05]], normals_W=[1, 0, 0], frictions=0.5)
+    lying = replace(FLAT, v_WB_W=[0, 0, 0])
+    question = ContactModeQuestion(body="cube", state=lying, contacts=finger, force_W=[-1, 0, 0])
+    left_out = "'cube' touches 'floor', where no contact is given"
+    assert modes_questions.answer(question, KNOWN).warnings == (left_out,)
+    feet = ContactSet(
+        p_WC_W=[[-0.05, 0, 0.05], [-0.05, 0, 0], [0.05, 0, 0]],
+        normals_W=[[1, 0, 0], [0, 0, 1], [0, 0, 1]],
+        frictions=0.5,
+    )
+    assert modes_questions.answer(replace(question, contacts=feet), KNOWN).warnings == ()
+    above = replace(lying, p_WB_W=[0, 0, 0.06])
+    higher = replace(finger, p_WC_W=[[-0.05, 0, 0.06]])
+    assert modes_questions.answer(replace(question, state=above, contacts=higher), KNOWN).warnings == ()
+    on_top = ContactSet(p_WC_W=[[0, 0, 0.1]], normals_W=[0, 0, 1], frictions=0.5)
+    stack = BodiesContactModeQuestion(
+        bodies=[CUBE, "cube"],
+        states=[replace(lying, p_WB_W=[0, 0, 0.15]), lying],
+        contacts=on_top,
+        pairs=[(0, 1)],
+    )
+    assert bodies_questions.answer(stack, KNOWN).warnings == (left_out,)
 
 
 def test_a_margin_that_is_not_known_is_a_warning() -> None:
