@@ -146,7 +146,7 @@ ros2 service call /contact_dynamics/{service} contact_dynamics_interfaces/srv/{T
   "{case.request_text(case.settings[0])}"
 ```
 
-In the response, `{path}` is {exact}.
+In the response, `{path}` is {exact}, in SI units.
 """
 
 

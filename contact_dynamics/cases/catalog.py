@@ -133,8 +133,8 @@ CASES: Final = {
     "creeping_capsule": Case(
         title="A capsule that must stick on a slope",
         story="A capsule rests on a slope, with a friction limit many times its load along the slope. "
-        "Engines that regularize friction, which approximate static friction by slow sliding, let it creep. "
-        "With Coulomb friction it does not move.",
+        "Engines with regularized friction, which approximates sticking by slow sliding, let it creep. With "
+        "Coulomb friction, it does not move.",
         discussed="google-deepmind/mujoco/issues/3328 liabru/matter-js/issues/613",
         setting="friction limit over the load along the slope",
         settings=(20.0, 95.0),
@@ -213,13 +213,13 @@ CASES: Final = {
     ),
     "ladder": Case(
         title="A ladder against a smooth wall",
-        story="The foot holds if tan(angle) is at least 1 / (2 μ). With approximate friction, bodies move too "
+        story="The foot sticks if tan(α) is at least 1 / (2 μ), with the angle α between ladder and floor. With approximate friction, bodies move too "
         "early at such thresholds.",
         discussed="raisimTech/raisimLib/issues/55 google-deepmind/mujoco/pull/3349",
         setting="angle below the limit, rad",
         settings=(-0.01, 0.01),
         quantity="angular acceleration, rad/s²",
-        formula="0, or g (cos − 2 μ sin) / (l (4/3 − 2 μ sin cos)) of the angle, with half length l",
+        formula="0, or g (cos α − 2 μ sin α) / (l (4/3 − 2 μ sin α cos α)), with the angle α and half the length l",
         exact=_ladder,
         tolerance=1e-13,
         why_tolerance="rounding error of numbers near g",
@@ -421,7 +421,7 @@ CASES: Final = {
         setting="mass of the first ball, kg",
         settings=(10.0, 1.0),
         quantity="speed of the second ball (10 kg) over that of the first",
-        formula="m over the mean of m and M, where m is the first mass and M the second",
+        formula="2 m / (m + M), with the mass m of the first ball and M of the second",
         exact=lambda mass: 2.0 * mass / (mass + 10.0),
         tolerance=1e-15,
         why_tolerance="rounding error of a number near 1",
@@ -469,15 +469,14 @@ CASES: Final = {
     ),
     "painleve_rod": Case(
         title="A sliding rod in Painlevé's paradox",
-        story="Sliding drives the rod's tip into the floor, and no finite force is consistent. A rigid rod "
-        "jams dynamically: an impact without approach stops the tip and throws the rod up, with a velocity "
-        "that is the same for every such μ. Soft contacts hide or delay this impact.",
+        story="A rod slides on its tip. If μ is large, no finite contact force is consistent, because friction drives "
+        "the tip into the floor. The rod jams dynamically: an impact without approach stops the tip and throws "
+        "the rod up. Soft contacts hide or delay this impact.",
         discussed="RobotLocomotion/drake/pull/4539 RobotLocomotion/drake/pull/5175",
         setting="μ",
         settings=(0.6, 1.0),
         quantity="upward velocity after the impact, m/s",
-        formula="1.5 P, where P is the normal impulse at which Routh's path, along the cone's edge and then "
-        "the sticking line, ends compression",
+        formula="1.5 P, where P is the normal impulse at the end of compression on Routh's impulse path",
         exact=_painleve_rod,
         tolerance=1e-14,
         why_tolerance="rounding error of numbers near 1",
