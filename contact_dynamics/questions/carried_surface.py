@@ -90,13 +90,8 @@ def with_carried(
 ) -> tuple[World, tuple[str, ...], tuple[CarrierNoise, ...]]:
     """Return a world with carried surfaces at an instant, warnings about their motion, and their noise.
 
-    Args:
-        world: The world, with the bodies that carry the surfaces.
-        carried: The surfaces.
-        states: The published states of these bodies.
-        stamp_ns: ns, the instant. None means that of each body's latest state.
-        now_ns: ns, the present time, or None without a clock.
-        max_extrapolation: s, the longest time by which a motion is extrapolated.
+    The instant ``stamp_ns``, ns, is that of each body's latest state if it is None. The present time
+    ``now_ns``, ns, is None without a clock. Motions are extrapolated by at most ``max_extrapolation``, s.
 
     Raises:
         NoStateError: a carrying body has no state at that time, or too few for its acceleration.
@@ -142,7 +137,7 @@ def with_carried(
 def _plane_at(carried: CarriedSurface, carrier: Body, states: Sequence[BodyState], stamp_ns: int) -> Surface:
     """Return a carried plane in the world at a time, ns.
 
-    The last two of the carrier's states enclose the time, or the last one is before it.
+    The last two of the carrier's states enclose the time, or the last one precedes it.
     """
     a_W, alpha_W = _accelerations(states)
     state = _state_at(states, stamp_ns, a_W)

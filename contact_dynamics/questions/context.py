@@ -117,9 +117,5 @@ def check_read(condition: str, *, is_met: bool, **values: object) -> None:
 
 
 def check_optional(field_name: str, value: float | None) -> float | None:
-    """Return a number >= 0 as a float, or None for None. Refuse anything else.
-
-    Raises:
-        InvalidFieldError: the number is negative or not finite.
-    """
+    """Return a number >= 0 as a float, or None for None; otherwise, raise `InvalidFieldError`."""
     return None if value is None else check_not_negative(field_name, value)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Estimates whether a question is quick: whether it is sure to be answered within about 30 ms.
+"""Estimates whether a question is quick: whether it is certainly answered within about 30 ms.
 
 The server answers quick questions itself and sends others to workers (`questions.workers`). The estimate uses
 the sizes of lists and the options, since the exact effort is only known afterwards. The records of services
@@ -60,7 +60,7 @@ def excerpt(question: Question[Answer], context: Context) -> Context:
     sources: list[tuple[Body | str, StateSource]] = []
     if hasattr(about, "bodies") and hasattr(about, "states"):
         sources += zip(about.bodies, about.states, strict=True)
-        with suppress(ContactDynamicsError):  # which the answer will raise
+        with suppress(ContactDynamicsError):  # the answer raises it
             sources += zip(about.bodies, at_one_time(about.bodies, about.states, context), strict=True)
     body, source = getattr(about, "body", None), getattr(about, "state", None)
     if body is not None and source is not None:
@@ -80,7 +80,7 @@ def excerpt(question: Question[Answer], context: Context) -> Context:
 
 
 def _stamp_of(body: Body | str, source: StateSource, context: Context) -> int:
-    """Return the time of a body's state, ns, or 0 if there is none, which the answer will say."""
+    """Return the stamp of a body's state, ns, or 0 if there is none, which is an error of the answer."""
     if isinstance(source, PublishedState):
         source = replace(source, fit_window=0.0)
     stamp_ns = 0

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The plane of motion of a question: it is chosen, and modes and impacts in it are put in world axes.
+"""Chooses the plane of motion of a question, and converts modes and impacts in it to world axes.
 
-So planar and spatial answers have one form. Positions in the plane are relative to the centre of mass.
+Planar and spatial answers therefore have one form. Positions in the plane are relative to the centre of mass.
 """
 
 from __future__ import annotations
@@ -43,11 +43,9 @@ def planar_problem_of(
     torque_W: FloatArray,
     speed_tolerance: float,
 ) -> PlanarProblem:
-    """Return a problem in a plane of motion. If ``plane`` is None, the best fitting plane is found.
+    """Return a problem in a plane of motion. If ``plane`` is None, it is the best fitting plane.
 
-    Raises:
-        OutOfPlaneError: something leaves the plane by too much, as in `project_onto_plane` and
-            `best_plane`.
+    Raise `OutOfPlaneError` as `project_onto_plane` and `best_plane` do.
     """
     if plane is None:
         return project_onto_best_plane(
@@ -73,7 +71,7 @@ def lifted_mode(mode: PlanarMode, problem: PlanarProblem, partners: tuple[int, .
         angular_acceleration_W=mode.angular_acceleration * plane.normal_W,
         contact_forces_W=equal_shares(lifted_vectors(mode.contact_forces, problem), partners),
         contact_accelerations_W=lifted_vectors(mode.contact_accelerations, problem),
-        tangential_directions_W=np.zeros((0, 3)),  # the letters say it
+        tangential_directions_W=np.zeros((0, 3)),  # the letters contain them
         misdirection=0.0,
         forces_unique=mode.forces_unique,
         motion_unique=mode.motion_unique,
@@ -93,10 +91,10 @@ def lifted_margin(margin: PlanarModeMargin, plane: PlaneOfMotion) -> SpatialMode
 
 
 def lifted_wrench_set(wrenches: PlanarWrenchSet, plane: PlaneOfMotion) -> SpatialWrenchSet:
-    """Return the applied wrenches of a mode in world axes. Wrenches out of the plane have no bounds."""
+    """Return the applied wrenches of a mode in world axes. Those out of the plane are unlimited."""
     return SpatialWrenchSet(
         mode=wrenches.mode,
-        sliding_from_W=np.zeros((0, 3)),  # the letters say it
+        sliding_from_W=np.zeros((0, 3)),  # the letters contain them
         sliding_to_W=np.zeros((0, 3)),
         vertices=_wrench_rows(wrenches.vertices, plane),
         generators=_wrench_rows(wrenches.generators, plane),
@@ -130,7 +128,7 @@ def _wrench_row(wrench: PlanarWrench, plane: PlaneOfMotion) -> FloatArray:
 def lifted_impact(impact: PlanarImpact, problem: PlanarProblem, state: BodyState) -> SpatialImpact:
     """Return an impact at the one contact of a plane of motion, in world axes.
 
-    Motion out of the plane stays as it was in ``state``, just before the impact.
+    Motion out of the plane remains as in ``state``, just before the impact.
     """
     (contact,) = problem.contacts
     axes = np.array((contact.tangent, contact.normal)) @ problem.plane.axes_W
@@ -156,7 +154,7 @@ def lifted_impact(impact: PlanarImpact, problem: PlanarProblem, state: BodyState
 def several_in_plane(
     impact: ResolvedImpact, problem: PlanarProblem, body: MassProperties, state: BodyState
 ) -> ResolvedImpact:
-    """Return the impact of a body that `planar_in_space` stood for, with motion out of the plane as before.
+    """Return the impact of the body that `planar_in_space` replaced, with unchanged motion out of the plane.
 
     ``body`` and ``state`` are the real ones just before the impact.
     """

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""This file finds the times at which a trajectory is asked for, and what ends it."""
+"""Determines the times of the samples of a trajectory, and the event that ends it."""
 
 from __future__ import annotations
 
@@ -234,13 +234,13 @@ class Event(Record):
 def times_of(
     sampling: Sampling, subject: Subject, motion: FreeMotion | ForcedMotion, context: Context
 ) -> tuple[FloatArray, Event | None]:
-    """Return the times, (n,), s after the state's stamp, at which a motion is asked for, and what ends them.
+    """Return the times of the samples, (n,), s after the state's stamp, and the event that ends the motion.
 
     Raises:
         InvalidFieldError: the motion would be integrated or searched for too long, or a point is behind its
             plane and moves away.
         TooLargeError: more samples than `MAX_SAMPLES`.
-        NoContactError: contact is asked for of a body that has no shape.
+        NoContactError: the body of a search for contact has no shape.
     """
     if isinstance(sampling, AtTimes):
         _check_reach("times", motion, sampling.times)
@@ -321,7 +321,7 @@ def _plane_reached(
 def _check_reach(
     field: str, motion: FreeMotion | ForcedMotion, times: FloatArray, *, search: bool = False
 ) -> None:
-    """Refuse what would be integrated or searched for too long, before it is."""
+    """Reject an integration or a search that would take too long."""
     if isinstance(motion, ForcedMotion):
         most, when = MAX_INTEGRATED_TURNS, "under torque or drag"
     elif search:
@@ -334,7 +334,7 @@ def _check_reach(
 def check_turns(
     field: str, motion: FreeMotion | ForcedMotion, times: FloatArray, most: float, when: str
 ) -> None:
-    """Refuse times, (n,), s, by which a body turns more than ``most`` at its present rate, and say why."""
+    """Reject times, (n,), s, in which a body turns more than ``most`` at its present rate, with a reason."""
     w_WB_W = motion.state.w_WB_W
     turns = float(np.abs(times).max(initial=0.0)) * math.sqrt(w_WB_W @ w_WB_W) / (2.0 * math.pi)
     if turns > most:
@@ -342,7 +342,7 @@ def check_turns(
 
 
 def _at_rate(rate: float, duration: float, end: float | None) -> FloatArray:
-    """Return times from 0 at a rate, up to the duration, or to the event, which is then the last."""
+    """Return times from 0 at a rate, up to the duration or to the event, which is then the last time."""
     until = duration if end is None else end
     _check_count("rate * duration", until * rate)
     times = np.arange(math.floor(until * rate * (1.0 + 1e-12)) + 1) / rate
@@ -350,7 +350,7 @@ def _at_rate(rate: float, duration: float, end: float | None) -> FloatArray:
 
 
 def _ascending(field: str, times: ArrayLike) -> FloatArray:
-    """Return times, (n,), s, that ascend and are not too many."""
+    """Return times, (n,), s, or raise an error if they do not ascend or are too many."""
     listed = np.asarray(times)
     _check_count(field, listed.size)
     checked = check_array(field, listed, (None,))

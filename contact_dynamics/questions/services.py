@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Questions, answers, and one record for each service, with its types, its adapters and what answers it.
+"""Questions, answers, and one record for each service, with its types, adapters and answering function.
 
-The server, the visualizer, replay, tables, plots and `ask` all read these records. To add a service, add its
+The server, the visualizer, replay, tables, plots and `ask` read these records. To add a service, add its
 record here, beside its ``.srv``, its question and answer, and their adapters.
 
-A record gives each function by its import path, and the function is imported when it is used: the server
-imports no viewer, a table no server, and this file none of them.
+A record contains the import path of each function, which is imported when it is used: the server imports no
+viewer, a table no server, and this file none of them.
 """
 
 from __future__ import annotations
@@ -101,7 +101,7 @@ class Question(Record, Generic[Answer_co]):
 
 
 class ServiceType(Protocol):
-    """What rosidl makes of a service's file."""
+    """The class that rosidl generates from a service file."""
 
     Request: type
     Response: type
@@ -109,10 +109,10 @@ class ServiceType(Protocol):
 
 
 class ImportedOnUse(Generic[Result]):
-    """A function that is imported when it is used first."""
+    """A function that is imported when it is first used."""
 
     def __init__(self, path: str) -> None:
-        """Take its import path, "package.module:function" or "package.module:Class.function"."""
+        """Set its import path, "package.module:function" or "package.module:Class.function"."""
         self.module, _, self._name = path.partition(":")
 
     @cached_property
@@ -185,30 +185,29 @@ class Service:
         return found
 
     def prepare(self) -> None:
-        """Import what answers a request, so that the first one does not wait for it."""
+        """Import everything that answers a request, so that the first one need not wait for it."""
         for each in (self.question_from_msg, self.answer, self.answer_to_msg, self.is_quick):
             if each is not None:
                 each.function  # noqa: B018  it is imported by that
 
     def question_of(self, request: object, *, world: World, world_frame: str) -> Question[Answer]:
-        """Return the question that a request asks, whoever made the request.
+        """Return the question of a request.
 
-        Raises:
-            InvalidFieldError: a number in it is none that its client meant, because rclpy mangled it.
-            ContactDynamicsError: the request is rejected by `question_from_msg`.
+        Raise `InvalidFieldError` if rclpy corrupted a number in it, or another `ContactDynamicsError` if
+        `question_from_msg` rejects it.
         """
         _CHECK_NUMBERS(request)
         return self.question_from_msg(request, world=world, world_frame=world_frame)
 
     def is_answered_at_once(self, question: Question[Answer], context: Context) -> bool:
-        """Return whether the answer is sure to come soon. A question that is rejected counts as quick."""
+        """Return whether the answer is quick. A question that is rejected counts as quick."""
         try:
             return self.is_quick is not None and self.is_quick(question, context)
         except ContactDynamicsError:
             return True
 
     def in_words(self, answer: Answer) -> list[str]:
-        """Return an answer in words, with the most important first."""
+        """Return an answer as texts, the most important first."""
         return [answer.in_short()] if self.words is None else self.words(answer)
 
 
@@ -336,11 +335,7 @@ SERVICES: Final = (
 
 
 def service_of_type(service_type: str) -> Service:
-    """Return the service of a type, which is given as "package/srv/Name".
-
-    Raises:
-        NotSupportedError: there is none.
-    """
+    """Return the service of a type, "package/srv/Name", or raise `NotSupportedError` if there is none."""
     for service in SERVICES:
         if service.type_name == service_type.rpartition("/")[2]:
             return service
@@ -349,11 +344,7 @@ def service_of_type(service_type: str) -> Service:
 
 
 def service_of(what: Question[Answer] | Answer) -> Service:
-    """Return the service that a question is for, or that an answer is from.
-
-    Raises:
-        NotSupportedError: there is none.
-    """
+    """Return the service of a question or of an answer, or raise `NotSupportedError` if there is none."""
     path = f"{type(what).__module__}:{type(what).__qualname__}"
     for service in SERVICES:
         if path in {service.question_type, service.answer_type}:
@@ -363,14 +354,11 @@ def service_of(what: Question[Answer] | Answer) -> Service:
 
 
 def at_instant(question: Question[Answer], context: Context) -> Context:
-    """Return the context of one question, with the carried surfaces as they are at its instant.
+    """Return the context of one question, with the carried surfaces at its instant.
 
     The instant is the stamp of the body's state, or the present if it has none. Surfaces carried by the body
-    itself are left out, and so are all carried surfaces if no contacts are detected.
-
-    Raises:
-        NoStateError: a carrying body has no state at that time.
-        StaleStateError: its latest state is too old.
+    itself are left out, and so are all carried surfaces if no contacts are detected. Raise `NoStateError` if
+    a carrying body has no state at that time, and `StaleStateError` if its latest state is too old.
     """
     if not context.carried:
         return context

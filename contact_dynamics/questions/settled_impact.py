@@ -97,7 +97,7 @@ class ModeCase(Record):
 
 
 def settled_in_space(case: ModeCase, verdict: ModeVerdict) -> SettledImpact | None:
-    """Return the impact and the modes after it, or None if the verdict on a case in space needs none."""
+    """Return the impact and the modes after it, or None if the verdict on a spatial case requires none."""
     if verdict not in _UNSETTLED:
         return None
     body, state = case.subject.body.mass_properties, case.subject.state
@@ -130,15 +130,11 @@ def settled_in_plane(
     verdict: ModeVerdict,
     partners: tuple[int, ...],
 ) -> SettledImpact | None:
-    """Return the impact and the modes after it, or None if the verdict on a planar case needs none.
+    """Return the impact and the modes after it, or None if the verdict on a planar case requires none.
 
-    Args:
-        case: The case in space.
-        problem: The case in its plane of motion.
-        in_plane: The question about contact modes there.
-        verdict: The verdict on it.
-        partners: The mirror image of each contact in the plane. Mirror images share forces, and impulses at
-            one instant. An impulse of a sequence belongs to the contact that struck.
+    The case in its plane of motion is ``problem``, and its question about contact modes ``in_plane``. The
+    ``partners`` are the mirror images of the contacts, which share forces and simultaneous impulses. An
+    impulse of a sequence belongs to the contact that struck.
     """
     if verdict not in _UNSETTLED:
         return None
@@ -189,7 +185,7 @@ def _several(
     is_settled: Callable[[BodyState], bool],
     plane_normal_W: FloatArray | None = None,
 ) -> ResolvedImpact:
-    """Return the impact of several contacts. Those that approach strike in turn, those that jam at once."""
+    """Return the impact of several contacts: one by one if they approach, at once if they jam."""
     if verdict == ModeVerdict.IMPACT:
         return several_impact(body, state, contacts, velocity_tolerance=case.velocity_tolerance)
     return jamming_impact(
@@ -211,7 +207,7 @@ def _with_orders(
     ordered: tuple[MassProperties, BodyState, ContactSet],
     verdict: ModeVerdict,
 ) -> ResolvedImpact:
-    """Return an impact with the outcomes over the orders of contacts that approach, if these are few."""
+    """Return an impact with the outcomes over the orders of the approaching contacts, if these are few."""
     if verdict != ModeVerdict.IMPACT or len(ordered[2]) > MAX_CONTACTS_IN_ORDERS:
         return resolved
     return with_orders(resolved, outcomes_over_orders(*ordered, velocity_tolerance=case.velocity_tolerance))

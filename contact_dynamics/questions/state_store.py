@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Keeps the published states of each body for as long as questions about the past are answered.
+"""Stores the published states of each body for questions about the present and the recent past.
 
-A state can be handed over unread: as its stamp, and a function that reads it. It is read when a question
-needs it, and most never are. So a thousand states a second cost little more than the memory they take.
+A state can be stored undecoded, as its stamp and a function that decodes it when a question requires it. Most
+states are never required, so a thousand states per second cost little more than their memory.
 """
 
 from __future__ import annotations
@@ -25,12 +25,12 @@ if TYPE_CHECKING:
     from contact_dynamics.questions.uncertain_state import KnownState
 
     ReadState: TypeAlias = Callable[[], KnownState | None]
-    """Reads a state, or returns None if it cannot be read, which the function itself then tells."""
+    """Decodes a state, or reports that it is invalid and returns None."""
 
 
 @dataclass(slots=True, kw_only=True)
 class Arrivals:
-    """The states of one body since the beginning, kept or not."""
+    """The numbers of received and rejected states of one body, and the reasons."""
 
     came: int = 0  # number of received states
     rejected: int = 0  # number of rejected ones, some of which were stored before they were decoded
@@ -49,7 +49,7 @@ class Arrivals:
     expected: str = "none has been received yet"  # the error text before the first state
 
     def why_none(self, now_ns: int | None) -> str:
-        """Return in words why there is no state at the present time, ns."""
+        """Return the reason why there is no state at the present time, ns, as text."""
         if not self.came:
             return self.expected
         count = f"{self.came} message{'s' * (self.came != 1)} received"
@@ -60,7 +60,7 @@ class Arrivals:
         return f"{count}; none could be read"
 
     def why_old(self, now_ns: int) -> str:
-        """Return in words what became of states since the newest that is kept, or nothing if none came."""
+        """Return what happened to states after the latest stored one, as text, or an empty text."""
         if self.newest_is_rejected:
             return f"; later messages were rejected, the last{self._ago(now_ns)} because {self.reason}"
         if self.last_is_old:
@@ -68,13 +68,13 @@ class Arrivals:
         return ""
 
     def _ago(self, now_ns: int | None) -> str:
-        """Return how long ago the last one was rejected, which may have been by a program that has ended."""
+        """Return the time since the last rejection as text, since its publisher may no longer run."""
         if now_ns is None or self.rejected_ns is None:
             return ""
         return f" {to_seconds(now_ns - self.rejected_ns):.1f} s ago"
 
     def keep(self, now_ns: int | None, *, old_s: float | None) -> None:
-        """Note a state that came and is kept. If it was too old when it came, its age then is ``old_s``."""
+        """Count a stored state. If it was too old on arrival, its age was ``old_s``."""
         self.came += 1
         self.kept_ns = now_ns
         self.newest_is_rejected = False
@@ -84,9 +84,9 @@ class Arrivals:
             self.age = old_s
 
     def refuse(self, reason: object, *, was_kept: bool, now_ns: int | None) -> None:
-        """Note a state that came and was not kept, or that was counted and kept, and cannot be read.
+        """Count a rejected state, or one that was stored before and cannot be decoded.
 
-        The latter are read long after they came, and the newest first.
+        The latter are decoded long after their arrival, the latest first.
         """
         self.came += not was_kept
         self.rejected += 1
@@ -98,7 +98,7 @@ class Arrivals:
         self.discarded = ""
 
     def throw_away(self, reason: str) -> None:
-        """Note that states that were kept are not any more."""
+        """Set the reason why the stored states were discarded."""
         self.discarded = reason
 
 
@@ -107,15 +107,14 @@ def _is_before(one_ns: int | None, other_ns: int | None) -> bool:
 
 
 FUTURE_TOLERANCE: Final = 0.5
-"""s. By default a stamp may be ahead of the clock by this much. The clocks of two machines that NTP keeps
-differ by far less."""
+"""s. Default of the largest lead of a stamp over the clock. Clocks synchronized by NTP differ by far less."""
 
 MAX_STATES: Final = 20_000
-"""States of one body that are kept, where nothing else is said: 20 s at 1 kHz, some 20 MB of Odometry."""
+"""Default of the largest number of stored states of a body: 20 s at 1 kHz, some 20 MB of Odometry."""
 
 
 class StateStore:
-    """Published states by body, sorted by their stamps. When new ones come, those beyond the history go."""
+    """Published states by body, sorted by their stamps. Those older than the history are discarded."""
 
     def __init__(
         self,
@@ -128,10 +127,10 @@ class StateStore:
         """Begin without states.
 
         Args:
-            history: s, for how long states are kept.
-            timeout: s. A state that is older when it is asked about is refused.
-            future_tolerance: s. A state whose stamp is farther ahead of the clock is refused.
-            max_states: how many of a body are kept, however fast they come. The oldest go first.
+            history: s, duration for which states are stored.
+            timeout: s. A state that is older when a question requires it is rejected.
+            future_tolerance: s. A state whose stamp is further ahead of the clock is rejected.
+            max_states: Largest number of states of a body. The oldest are discarded first.
 
         Raises:
             InvalidFieldError: a duration is negative, infinite or no number, or ``max_states`` is no whole
@@ -145,29 +144,28 @@ class StateStore:
 
     @checks_types
     def add(self, body_name: str, state: KnownState, *, now_ns: int | None = None) -> None:
-        """Keep a state. ``now_ns`` is the present time, ns. Without it, any stamp is accepted.
+        """Store a state. ``now_ns`` is the present time, ns. Without it, any stamp is accepted.
 
         Raises:
-            InvalidFieldError: its stamp is ahead of the present time by more than the tolerance. Such a state
-                would stay the newest until the clock came to it. Or the stamp is zero, which publishers leave
-                it at that forget it, unless the clock has only begun.
+            InvalidFieldError: the stamp is ahead of the present time by more than the tolerance, so that the
+                state would be the latest until that time; or the stamp is zero, as of publishers that leave
+                it out, unless the clock has just started.
         """
         self._keep(body_name, state.stamp_ns, state, now_ns)
 
     def add_unread(
         self, body_name: str, stamp_ns: int, read: ReadState, *, now_ns: int | None = None
     ) -> None:
-        """Keep a state of that stamp, ns, which ``read`` returns when a question needs it; else as `add`.
+        """Store a state with a stamp, ns, which ``read`` decodes when a question requires it.
 
-        Raises:
-            InvalidFieldError: as `add`.
+        The errors are those of `add`.
         """
         self._keep(body_name, stamp_ns, read, now_ns)
 
     def change_limits(
         self, *, history: float, timeout: float, future_tolerance: float, max_states: int = MAX_STATES
     ) -> None:
-        """Keep and reject states by other limits from now on; see `StateStore`."""
+        """Set other limits for later states; see `StateStore`."""
         self._history = check_not_negative("history", history)
         self._history_ns = to_ns(self._history)
         self._timeout_ns = to_ns(check_not_negative("timeout", timeout))
@@ -177,34 +175,34 @@ class StateStore:
     def refuse(
         self, body_name: str, reason: object, *, was_kept: bool = False, now_ns: int | None = None
     ) -> None:
-        """Note, for whoever asks and finds none, that a state is not kept, or was kept and cannot be read.
+        """Count a rejected state, or a stored one that cannot be decoded, with the reason for later errors.
 
-        ``now_ns`` is the time when it came, ns, if that is known.
+        ``now_ns`` is its time of arrival, ns, if that is known.
         """
         self._arrivals[body_name].refuse(reason, was_kept=was_kept, now_ns=now_ns)
 
     def expect(self, body_name: str, expected: str) -> None:
-        """Note, for whoever asks before a state of a body came, where its states are expected."""
+        """Set the text about the expected states of a body, for errors before the first one."""
         self._arrivals[body_name].expected = expected
 
     def arrivals(self, body_name: str) -> Arrivals:
-        """Return what became of the states of a body that came."""
+        """Return the numbers of received and rejected states of a body."""
         return self._arrivals.get(body_name, Arrivals())
 
     def forget(self, body_name: str, reason: str) -> None:
-        """Forget the states of a body; the reason says, after "when", what happened."""
+        """Discard the states of a body; the reason is a text that follows "when"."""
         track = self._tracks.pop(body_name, None)
         if track is not None and track.stamps:
             self._arrivals[body_name].throw_away(reason)
 
     def clear(self) -> None:
-        """Forget all states because the clock was set back, so that their stamps become times to come."""
+        """Discard all states because the clock was set back, so that their stamps are in the future."""
         for body_name in list(self._tracks):
             self.forget(body_name, "the clock was set back")
 
     @checks_types
     def newest(self, body_name: str, *, now_ns: int | None = None) -> KnownState:
-        """Return the newest state. Without the present time, ns, it may be of any age.
+        """Return the latest state. Without the present time, ns, it may be of any age.
 
         Raises:
             NoStateError: none has been received yet, or none of those received is stored; the message
@@ -221,7 +219,7 @@ class StateStore:
 
     @checks_types
     def window(self, body_name: str, newest: KnownState, seconds: float) -> list[KnownState]:
-        """Return the states of the last ``seconds`` up to ``newest``, by time, and one for each stamp."""
+        """Return the states of the last ``seconds`` up to ``newest``, by time, one for each stamp."""
         track = self._tracks.get(body_name, _Track())
         first_ns = self._first_of_window(newest.stamp_ns, seconds)
         return list({state.stamp_ns: state for state in track.between(first_ns, newest.stamp_ns)}.values())
@@ -229,14 +227,14 @@ class StateStore:
     def around(
         self, body_name: str, stamp_ns: int, *, now_ns: int | None = None
     ) -> tuple[KnownState, KnownState | None]:
-        """Return the newest state with at most that stamp, and the one after it.
+        """Return the latest state with at most a given stamp, and the next one.
 
-        The one after it is None if the state has that stamp itself, or is the newest.
+        The next one is None if the state has the given stamp, or is the latest.
 
         Raises:
-            NoStateError: every state that is kept has a later stamp, or none is kept.
-            StaleStateError: the stamp is between two states that are further apart than the timeout, or after
-                the newest, and that is older than the timeout at the present time, ``now_ns``.
+            NoStateError: every stored state has a later stamp, or none is stored.
+            StaleStateError: the states before and after the stamp are further apart than the timeout; or the
+                stamp is after the latest state, which is older than the timeout at ``now_ns``.
         """
         if now_ns is not None:
             self._forget_future(body_name, now_ns)
@@ -263,15 +261,10 @@ class StateStore:
     def pairs(
         self, body_name: str, *, after_ns: int, apart: float, count: int
     ) -> tuple[list[tuple[KnownState, KnownState]], int]:
-        """Return a few pairs of states, spread over those that came after a stamp, and the newest stamp.
+        """Return at most ``count`` pairs of states, spread over those after a stamp, and the latest stamp.
 
-        No other states are read.
-
-        Args:
-            body_name: the body.
-            after_ns: the stamp, ns, which the first state of a pair may have too.
-            apart: s. The second state of a pair is the next one that is this much later.
-            count: how many pairs at most.
+        The first state of a pair may have the stamp ``after_ns``; the second one is the first that is later
+        by ``apart``, s. No other states are decoded.
         """
         track = self._tracks.get(body_name, _Track())
         stamps = track.stamps
@@ -287,7 +280,7 @@ class StateStore:
         return pairs, stamps[-1] if stamps else 0
 
     def count(self, body_name: str, stamp_ns: int | None, seconds: float) -> int:
-        """Return how many states a window has up to a stamp, or to the newest state; none of them is read."""
+        """Return the number of states in a window up to a stamp, or to the latest state, without decoding."""
         stamps = self._tracks.get(body_name, _Track()).stamps
         end = len(stamps) if stamp_ns is None else bisect_right(stamps, stamp_ns)
         return end - bisect_left(stamps, self._first_of_window(stamps[end - 1], seconds)) if end else 0
@@ -295,14 +288,11 @@ class StateStore:
     def excerpt(
         self, wanted: Iterable[tuple[str, int | None, float]], *, now_ns: int | None = None
     ) -> StateStore:
-        """Return a store that answers as this one does about bodies at a stamp and some time before it.
+        """Return a store that gives the same results about bodies at a stamp and in the window before it.
 
-        All of its states are read, so that another process can take it.
-
-        Args:
-            wanted: for each body its name, the stamp, ns, or None for that of the newest state, and how long
-                the `window` up to there is, s.
-            now_ns: the present time, ns, if it is known.
+        All of its states are decoded, so that it can be sent to another process. ``wanted`` contains for each
+        body its name, the stamp, ns, or None for the latest, and the length of the `window` up to it, s.
+        ``now_ns`` is the present time, ns, if it is known.
         """
         part = StateStore(
             history=self._history,
@@ -329,7 +319,7 @@ class StateStore:
     def _first_of_window(self, newest_ns: int, seconds: float) -> int:
         """Return the earliest stamp, ns, in the window of the last ``seconds`` up to the state ``newest_ns``.
 
-        No more than the history is kept, so a longer window is as long as the history.
+        A window is at most as long as the history.
         """
         return newest_ns - to_ns(min(seconds, self._history))
 
@@ -355,7 +345,7 @@ class StateStore:
         track.forget_before(track.stamps[-1] - self._history_ns, most=self._max_states)
 
     def _forget_future(self, body_name: str, now_ns: int) -> None:
-        """Forget states too far ahead of the clock, which came before the clock began or was set back."""
+        """Discard states too far ahead of the clock, from before it started or was set back."""
         track = self._tracks.get(body_name)
         latest = now_ns + self._future_tolerance_ns
         if track and track.stamps and track.stamps[-1] > latest:
@@ -374,7 +364,7 @@ class StateStore:
 
 
 class _Track:
-    """The states of one body in order of their stamps, read or unread."""
+    """The states of one body in the order of their stamps, decoded or not."""
 
     __slots__ = ("_states", "stamps")
 
@@ -392,7 +382,7 @@ class _Track:
         self._states.insert(index, state)
 
     def last(self, end: int) -> KnownState | None:
-        """Return the last state before an index that can be read; forget those that cannot."""
+        """Return the last valid state before an index, and discard invalid ones."""
         while end > 0:
             end -= 1
             state = self.at(end)
@@ -402,7 +392,7 @@ class _Track:
         return None
 
     def first(self, begin: int) -> KnownState | None:
-        """Return the first state from an index on that can be read; forget those that cannot."""
+        """Return the first valid state from an index on, and discard invalid ones."""
         while begin < len(self.stamps):
             state = self.at(begin)
             if state is not None:
@@ -411,7 +401,7 @@ class _Track:
         return None
 
     def between(self, first_ns: int, last_ns: int) -> list[KnownState]:
-        """Return the states from one stamp to another, both included; forget those that cannot be read."""
+        """Return the states from one stamp to another, both included, and discard invalid ones."""
         begin, end = bisect_left(self.stamps, first_ns), bisect_right(self.stamps, last_ns)
         found = [self.at(index) for index in range(begin, end)]
         readable = [state for state in found if state is not None]
@@ -430,7 +420,7 @@ class _Track:
         del self.stamps[kept:], self._states[kept:]
 
     def at(self, index: int) -> KnownState | None:
-        """Return the state at an index, or None if it cannot be read."""
+        """Return the state at an index, or None if it is invalid."""
         state = self._states[index]
         if isinstance(state, (BodyState, UncertainState)):
             return state

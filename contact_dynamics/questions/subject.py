@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Finds the body that a question is about, in the state that it gives or that was published."""
+"""Finds the body of a question, in its given or published state."""
 
 from __future__ import annotations
 
@@ -57,7 +57,7 @@ class PublishedState(Record):
     fit_window: float = 0.0
 
     def __post_init__(self) -> None:
-        """Check both."""
+        """Check the fields."""
         if self.stamp_ns is not None:
             object.__setattr__(self, "stamp_ns", check_stamp("stamp_ns", self.stamp_ns))
         object.__setattr__(self, "fit_window", check_not_negative("fit_window", self.fit_window))
@@ -101,16 +101,15 @@ class NamedState(Record):
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
 class Subject(Record):
-    """The body that a question is about, and its state.
+    """The body of a question, and its state.
 
     Attributes:
         body: The body.
         state: Its state.
-        covariance: (12, 12), of the state, in the order of `UncertainState`, or None if it is not known.
-        fit: How well the motion fits the published states that the state was found from, or None without a
-            fit.
-        by_gravity: s^2 and s, by how much its position and velocity would change with gravity, as far as it
-            was found by a flight.
+        covariance: (12, 12), of the state, in the order of `UncertainState`, or None if it is unknown.
+        fit: Quality of the fit to published states, or None without a fit.
+        by_gravity: s^2 and s, derivatives of position and velocity by gravity, over the flight from which the
+            state was found.
     """
 
     body: Body
@@ -121,11 +120,9 @@ class Subject(Record):
 
 
 def at_stamp(source: StateSource, stamp_ns: int) -> StateSource:
-    """Return where the state of a second body comes from: the newest one is that at the first body's time.
+    """Return the source of a second body's state, with the latest state replaced by that at ``stamp_ns``.
 
-    Args:
-        source: Where it comes from.
-        stamp_ns: ns, the time of the first body's state, or 0 if it is not known.
+    The stamp, ns, is that of the first body's state, or 0 if it is unknown.
     """
     if isinstance(source, PublishedState) and source.stamp_ns is None and stamp_ns:
         return replace(source, stamp_ns=stamp_ns)
@@ -135,13 +132,10 @@ def at_stamp(source: StateSource, stamp_ns: int) -> StateSource:
 def at_one_time(
     bodies: Sequence[Body | str], sources: Sequence[StateSource], context: Context
 ) -> tuple[StateSource, ...]:
-    """Return where the states of several bodies come from: the newest ones are those at one time.
+    """Return the sources of several bodies' states, with the latest states replaced by those at one time.
 
-    It is that of the oldest of them, since the others are known before and after it. Bodies in contact do not
-    move freely, so that none can be followed beyond its newest state.
-
-    Raises:
-        ContactDynamicsError: as `subject_of`.
+    It is the stamp of the oldest of them, so that no state is extrapolated: bodies in contact do not move
+    freely. The errors are those of `subject_of`.
     """
     newest = [
         subject_of(body, source, context).state.stamp_ns
@@ -154,24 +148,23 @@ def at_one_time(
 def subject_of(
     body: Body | str, source: StateSource, context: Context, *, fit: Fitting | None = None
 ) -> Subject:
-    """Return the body that a question names or describes, in the state that it gives or refers to.
+    """Return the body of a question, in the state that the question contains or refers to.
 
     Args:
-        body: The body, or its name in the known world.
+        body: The body, or its name in the world of the context.
         source: Its state, or a reference to a published one.
-        context: What is known.
-        fit: A function that finds the state that fits a window of published ones best. By default a free
-            flight is fitted.
+        context: The world and the published states.
+        fit: A function that fits a motion to a window of published states. By default, it is a free flight.
 
     Raises:
-        UnknownBodyError: the known world has no body of that name.
-        NoStateError: no state of it was published, or every one that is kept has a later stamp.
-        StaleStateError: the newest state is too old, or those around the stamp are too far apart.
-        InvalidFieldError: a published state is asked for and the body has no name, or the window cannot be
-            fitted, or no motion fits it, or several do that differ by whole turns from state to state, or the
-            stamp is further ahead of the newest state than the default horizon.
+        UnknownBodyError: the world has no body of that name.
+        NoStateError: no state of it was published, or every stored one has a later stamp.
+        StaleStateError: the latest state is too old, or those around the stamp are too far apart.
+        InvalidFieldError: a published state is required and the body has no name; no motion can be fitted to
+            the window, or several that differ by whole turns between states; or the stamp is further ahead of
+            the latest state than the default horizon.
         NotInFlightError: an impact lies in the window, or the body rests, slides or is carried.
-        TooLargeError: the window has more states than are fitted.
+        TooLargeError: the window has too many states.
     """
     if isinstance(body, str):
         body = context.world.body(body)
@@ -214,10 +207,10 @@ _WITHOUT_FIT: Final = "0 takes the newest state as it is"
 
 
 def _check_fit(fit: FitResult, states: Sequence[BodyState]) -> None:
-    """Raise an error for a motion that does not fit the states, and for one that may not be the only one.
+    """Raise an error for a motion that does not fit the states, or may not be the only one that does.
 
-    Without published angular velocities a body is taken to turn by less than half a turn from state to state,
-    if it is seen to turn by less than a third.
+    Without published angular velocities, a body is assumed to turn by less than half a turn between states if
+    the fitted turn is less than a third.
     """
     if fit.velocity_jump is not None:
         raise NotInFlightError(
@@ -266,12 +259,9 @@ def covariance_of(subject: Subject) -> FloatArray:
 
 
 def changed_body(known: Body, mass_properties: MassProperties, p_FB_F: FloatArray) -> Body:
-    """Return a body with the name and the shape of a known one and another mass.
+    """Return a body with the name and the shape of a known one, and other mass properties.
 
-    Args:
-        known: The body as it is known.
-        mass_properties: Its mass and angular inertia now.
-        p_FB_F: (3,), m, its centre of mass now, in its published frame F.
+    ``p_FB_F`` is the new centre of mass, (3,), m, in its published frame F.
     """
     return Body(
         name=known.name,
@@ -284,9 +274,9 @@ def changed_body(known: Body, mass_properties: MassProperties, p_FB_F: FloatArra
 def _published(
     body: Body, source: PublishedState, context: Context
 ) -> tuple[Sequence[KnownState], KnownState | None]:
-    """Return the published states that are asked for, by time, as states of the body's centre of mass.
+    """Return the required published states by time, as states of the body's centre of mass.
 
-    The second value is the state after the stamp asked for, if that is between two states.
+    The second value is the state after the given stamp, if that is between two states.
     """
     name = body.name
     if not name:
@@ -308,7 +298,7 @@ def _published(
 
 
 def _moved(subject: Subject, later: KnownState | None, stamp_ns: int | None, context: Context) -> Subject:
-    """Return a subject at the stamp asked for: between its state and the later one, or in free motion."""
+    """Return a subject at a stamp: between its state and the later one, or in free motion."""
     state = subject.state
     if stamp_ns is None or stamp_ns == state.stamp_ns:
         return subject
@@ -367,8 +357,8 @@ _KEPT: Final = 4
 def kept_fit(body: MassProperties, states: Sequence[BodyState], *, gravity_W: FloatArray) -> FitResult:
     """Return the free motion that fits ``states`` best; see `fit_free_motion`, and its errors.
 
-    The last few are kept, since several questions are asked about one window of states: where it will land,
-    which impact follows, with which law. To fit it again costs more than the rest of an answer.
+    The last few results are cached, since several questions refer to one window of states, and a fit takes
+    longer than the rest of an answer.
     """
     return _fit(body, tuple(states), tuple(gravity_W.tolist()))
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Finds out whether published velocities are in other axes than they should be, by the poses between them."""
+"""Detects whether published velocities are in the wrong axes, by comparison with the poses."""
 
 from __future__ import annotations
 
@@ -18,33 +18,32 @@ if TYPE_CHECKING:
     from contact_dynamics.validation import FloatArray
 
 _PAIRS: Final = 20
-_PAIRS_A_LOOK: Final = 20  # so that the first throw is enough
-_APART_S: Final = 0.02  # noise of 1 mm in a position is 0.1 m/s of a velocity
+_PAIRS_A_LOOK: Final = 20  # enough to detect it in the first throw
+_APART_S: Final = 0.02  # over it, 1 mm of noise in a position causes 0.1 m/s
 _LONGEST_S: Final = 0.5
 _SLOW: Final = 0.1  # m/s
 _SHARE: Final = 0.2
 
 
 class TwistAxes:
-    """Watches the states of one body, which are published with their velocities in the body's axes.
+    """Checks the states of one body, which are published with velocities in the body's axes.
 
-    The commonest mistake is to publish them in the world's axes. An impact, noise or a clock that is wrong
-    also makes velocities and poses disagree, but not so that they agree in other axes.
+    The most frequent mistake is to publish them in the world's axes. After an impact, or with noise or a
+    wrong clock, velocities and poses disagree too, but do not agree in other axes.
     """
 
     def __init__(self, body_name: str, p_FB_F: FloatArray) -> None:
-        """Begin to watch a body, whose centre of mass is at ``p_FB_F``, (3,), m, in its frame."""
+        """Begin to check a body whose centre of mass is at ``p_FB_F``, (3,), m, in its frame."""
         self._body_name = body_name
         self._p_FB_F = p_FB_F
         self._newest_ns = 0
         self._found: deque[float] = deque(maxlen=_PAIRS)
 
     def look(self, states: StateStore) -> float | None:
-        """Look at some of the states that came since the last look, once a second.
+        """Check some of the states since the last call, once a second.
 
-        Returns:
-            m/s, by how much velocities and poses disagree, if the velocities of most of the last pairs of
-            states agree with the poses in the world's axes only. Otherwise, and if no state came, None.
+        If the velocities of most of the last pairs of states agree with the poses in the world's axes only,
+        return their median difference, m/s. Otherwise, and without new states, return None.
         """
         pairs, newest_ns = states.pairs(
             self._body_name, after_ns=self._newest_ns, apart=_APART_S, count=_PAIRS_A_LOOK
@@ -58,10 +57,10 @@ class TwistAxes:
 
 
 def disagreement(one: BodyState, other: BodyState, p_FB_F: FloatArray) -> float:
-    """Return by how much two states' velocities disagree with the way between them, m/s.
+    """Return the difference between two states' mean velocity and the mean rate of their positions, m/s.
 
     It is 0 if they agree, to 0.1 m/s or a fifth, or if they would not agree in the world's axes either. The
-    acceleration counts as constant from one to the other.
+    acceleration is assumed constant between the states.
     """
     elapsed = seconds_between(one.stamp_ns, other.stamp_ns)
     if not 0.0 < elapsed <= _LONGEST_S:
@@ -76,7 +75,7 @@ def disagreement(one: BodyState, other: BodyState, p_FB_F: FloatArray) -> float:
 
 
 def _off(travelled: FloatArray, velocity: FloatArray) -> tuple[float, float]:
-    """Return the difference of two velocities, and how large it may be, m/s."""
+    """Return the difference of two velocities, and its limit, m/s."""
     return float(np.linalg.norm(travelled - velocity)), max(_SLOW, _SHARE * float(np.linalg.norm(travelled)))
 
 

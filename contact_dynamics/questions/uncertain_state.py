@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A question or a published message may give a state with its covariance."""
+"""States with covariances, in questions and published messages."""
 
 from __future__ import annotations
 
@@ -53,13 +53,10 @@ KnownState: TypeAlias = "BodyState | UncertainState"  # a state, with its covari
 
 
 def with_deviations(known: KnownState, deviations: Sequence[float]) -> KnownState:
-    """Return a state that has a covariance, with the one that follows from deviations if it has none.
+    """Return a state with its covariance, or else with one of given standard deviations.
 
-    Args:
-        known: The state, with its covariance or without.
-        deviations: Standard deviations, the same along all axes, of the position of the centre of mass (m),
-            the orientation (rad), the linear velocity (m/s) and the angular velocity (rad/s). Without any,
-            the state stays as it is.
+    They are those of the position of the centre of mass (m), the orientation (rad), the linear velocity (m/s)
+    and the angular velocity (rad/s), equal along all axes. Without any, the state is unchanged.
     """
     if not deviations or not isinstance(known, BodyState):
         return known

@@ -127,17 +127,11 @@ class Workers:
         context: Context,
         done: Callable[[Answer | Exception], object],
     ) -> None:
-        """Send a question to a worker.
+        """Send a question to a worker, or raise `BusyError` if the queue is full.
 
-        Args:
-            answer: the function that answers it, from a module that a worker can import.
-            question: the question.
-            context: the context, which must not change (see `excerpt`).
-            done: is called, in another thread, with the answer, with the `ContactDynamicsError` that the
-                question raises, or with a `WorkerFault`.
-
-        Raises:
-            BusyError: the queue is full.
+        The function ``answer`` is from a module that a worker can import. The ``context`` must not change
+        (see `excerpt`). ``done`` is called, in another thread, with the answer, with the
+        `ContactDynamicsError` that the question raises, or with a `WorkerFault`.
         """
         most = len(self._workers) + self.limits.max_waiting
         with self._lock:
