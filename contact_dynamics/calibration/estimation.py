@@ -120,11 +120,10 @@ class Fitting:
     ) -> Estimation:
         """Return the estimate.
 
-        Args:
-            strikes_at: The residuals of the strikes at free parameters, and their names.
-            spread: The spreads, or None to estimate them.
-            start: (f,), the start, in standard units; the default is the configured values.
-            rounds: Number of fits, each from the result of the previous one. The last one rejects outliers.
+        ``strikes_at`` returns the residuals of the strikes at free parameters, and their names. The spreads
+        are estimated if ``spread`` is None. The ``start``, (f,), in standard units, is by default the
+        configured values. Each of the ``rounds`` of fits starts from the result of the previous one; the last
+        one rejects outliers.
         """
         x = self.start() if start is None else start
         kinds: list[str] = []

@@ -80,8 +80,7 @@ def drawn_strikes(found: Calibration) -> list[DrawnStrike]:
 def write_picture(path: Path, found: Calibration) -> int:
     """Draw the strikes of a calibration into a file, which is replaced. Return how many were drawn.
 
-    Raises:
-        OSError: the file cannot be written.
+    Raise `OSError` if the file cannot be written.
     """
     rows = drawn_strikes(found)[:MAX_DRAWN]
     shape = drawn_shape(found.body.shape)

@@ -68,11 +68,7 @@ BENT: Final = 15.0
 
 
 def check_that_it_flies(observed: Sequence[Observed]) -> None:
-    """Reject recordings in which the body never flies.
-
-    Raises:
-        InvalidFieldError: there is no flight in any of them, or no recording at all.
-    """
+    """Raise `InvalidFieldError` if the body never flies in any of the recordings."""
     if not any(each.flights for each in observed):
         seconds = sum(float(each.motion.times[-1] - each.motion.times[0]) for each in observed)
         raise InvalidFieldError(

@@ -118,8 +118,7 @@ class BlockPublisher(Node):
     def __init__(self, situation: Situation) -> None:
         """Read the configuration, and advertise the topics.
 
-        Raises:
-            ContactDynamicsError: the configuration is not allowed, or has no body with a topic of its own.
+        Raise `ContactDynamicsError` if the configuration is invalid, or has no body with a topic of its own.
         """
         super().__init__("block_publisher")
         parameters = read_server_parameters(NodeParameters(self, read_only=True))

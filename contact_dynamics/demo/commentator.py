@@ -46,8 +46,7 @@ class Commentator(Node):
     def __init__(self, situation: str, server: str) -> None:
         """Read the configuration, and create the clients.
 
-        Raises:
-            ContactDynamicsError: the configuration is not allowed, or it has no body with an odometry_topic.
+        Raise `ContactDynamicsError` if the configuration is invalid, or has no body with an odometry_topic.
         """
         super().__init__("commentator")
         parameters = read_server_parameters(NodeParameters(self, read_only=True))

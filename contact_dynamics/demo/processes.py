@@ -125,8 +125,7 @@ _DOMAINS: Final = 100
 def claim_domain() -> int:
     """Return a ROS_DOMAIN_ID that no other process on this machine uses, and claim it for this process.
 
-    Raises:
-        RuntimeError: all domains are in use.
+    Raise `RuntimeError` if all domains are in use.
     """
     in_use = _domains_in_use()
     for offset in range(_DOMAINS):

@@ -89,10 +89,8 @@ class Questioner(Node):
     def get_ready(self, check: Callable[[], object]) -> None:
         """Wait for all services, and then subscribe to the states, which makes the publisher start.
 
-        It calls ``check`` repeatedly, which raises an error when waiting has become useless.
-
-        Raises:
-            TimeoutError: the server does not provide the services in time.
+        It calls ``check`` repeatedly, which raises an error when waiting has become useless. Raise
+        `TimeoutError` if the server does not provide the services in time.
         """
         deadline = time.monotonic() + _START_S
         for client in self._askers.values():

@@ -190,11 +190,7 @@ def run_on_recordings(
 
 
 def check_writable(*files: Path | None) -> None:
-    """Check that the output files can be written, before the evaluation starts.
-
-    Raises:
-        OSError: a file cannot be written.
-    """
+    """Check that the output files can be written, before the evaluation starts, or raise `OSError`."""
     for path in files:
         if path is not None:
             with path.open("ab"):

@@ -63,15 +63,10 @@ def velocity_difference(predicted: BodyState, measured: BodyState) -> FloatArray
 
 
 def in_deviations(difference: FloatArray, covariance: FloatArray, stds: FloatArray) -> float | None:
-    """Return the Mahalanobis distance of a prediction from a measurement.
+    """Return the Mahalanobis distance of a prediction from a measurement, or None if not finite.
 
-    Args:
-        difference: (k,), predicted minus measured values, or the reverse.
-        covariance: (k, k), of the prediction.
-        stds: (k,), > 0, standard deviations of the measurement.
-
-    Returns:
-        The distance, or None if the covariance is not finite.
+    ``difference``, (k,), is predicted minus measured values, or the reverse; ``covariance``, (k, k), is that
+    of the prediction; ``stds``, (k,), > 0, are the standard deviations of the measurement.
     """
     if not np.isfinite(covariance).all():
         return None
@@ -83,10 +78,8 @@ def in_deviations(difference: FloatArray, covariance: FloatArray, stds: FloatArr
 def as_normal(distance: float, degrees: int, freedom: float) -> float:
     """Return the distance that a normal difference exceeds as often as Student's t exceeds a given distance.
 
-    Args:
-        distance: By the covariance of the t distribution's scale.
-        degrees: Number of components.
-        freedom: Degrees of freedom of the t distribution, or infinity.
+    The ``distance``, with a number of components (``degrees``), is by the covariance of the t distribution's
+    scale, whose degrees of freedom are ``freedom``, or infinity.
     """
     if math.isinf(freedom):
         return distance

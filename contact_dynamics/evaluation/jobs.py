@@ -54,8 +54,7 @@ class Job(Record):
     def key(self) -> str:
         """Return the key of the result: a hash of content, configuration, settings and code.
 
-        Raises:
-            OSError: a file cannot be read.
+        Raise `OSError` if a file cannot be read.
         """
         parts = {
             "content": self.source.digest(),
@@ -122,11 +121,7 @@ class ResultsFolder:
     """
 
     def __init__(self, path: Path) -> None:
-        """Create the folder if it does not exist.
-
-        Raises:
-            OSError: the folder cannot be created.
-        """
+        """Create the folder if it does not exist, or raise `OSError`."""
         path.mkdir(parents=True, exist_ok=True)
         self._path = path
         self._there = {file.stem.rpartition("-")[2]: file for file in path.glob("*.json")}
@@ -149,8 +144,7 @@ class ResultsFolder:
     def put(self, job: Job, result: SourceResult) -> None:
         """Store the result of a job. Failures are not stored, and are tried again next time.
 
-        Raises:
-            OSError: the file cannot be written.
+        Raise `OSError` if the file cannot be written.
         """
         if result.problem:
             return
@@ -186,16 +180,9 @@ def processes_for(jobs: Sequence[Job]) -> int:
 def run_jobs(jobs: Sequence[Job], *, processes: int = 1, dask: str = "") -> Iterator[Done]:
     """Yield the number of each job and the result of `run_job`, in the order of completion.
 
-    Args:
-        jobs: The jobs, numbered from 0.
-        processes: Number of processes on this machine. With 1, the jobs run in this process.
-        dask: Address of a Dask scheduler, or ``local:N`` for N workers on this machine. If it is empty,
-            Dask is not used.
-
-    Raises:
-        InvalidFieldError: the address is invalid.
-        NotSupportedError: Dask is not installed.
-        OSError: the scheduler cannot be reached.
+    The jobs run in this process, in several ``processes``, or by ``dask``, which is the address of a Dask
+    scheduler or ``local:N`` for N workers on this machine. Raise `InvalidFieldError` if the address is
+    invalid, `NotSupportedError` if Dask is not installed, and `OSError` if the scheduler cannot be reached.
     """
     if dask:
         yield from _on_dask(jobs, dask)

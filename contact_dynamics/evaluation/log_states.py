@@ -45,9 +45,8 @@ Clocks synchronised by NTP differ by far less, and simulated time differs by yea
 def parameters_of(source: ParameterSource) -> tuple[ServerParameters, Informed]:
     """Return the server's parameters, and the part of them with which predictions are made.
 
-    Raises:
-        ConfigurationError: a parameter is missing, or has a value that is not allowed.
-        NotSupportedError: a surface moves with a body.
+    Raise `ConfigurationError` if a parameter is missing or not allowed, and `NotSupportedError` if a surface
+    moves with a body.
     """
     parameters = read_server_parameters(source)
     return parameters, informed_by(parameters)
@@ -56,8 +55,7 @@ def parameters_of(source: ParameterSource) -> tuple[ServerParameters, Informed]:
 def informed_by(parameters: ServerParameters) -> Informed:
     """Return the part of a server's parameters with which predictions are made.
 
-    Raises:
-        NotSupportedError: a surface moves with a body, which the search for events does not follow.
+    Raise `NotSupportedError` if a surface moves with a body, which the search for events does not follow.
     """
     if parameters.carried:
         names = ", ".join(f"{each.surface.name!r} on {each.body_name!r}" for each in parameters.carried)
@@ -71,10 +69,8 @@ def informed_by(parameters: ServerParameters) -> Informed:
 def recording_of_log(path: Path, *, config: Path | None = None, only: Collection[str] = ()) -> Recording:
     """Return the states of a log's bodies, and the configuration of its server.
 
-    Args:
-        path: A bag folder, or one file of a bag.
-        config: File of server parameters that replaces the log's own record.
-        only: Names of the bodies whose states are read. If it is empty, all are read.
+    The path is a bag folder, or one file of a bag. The parameter file ``config`` replaces the log's own
+    record. Only the states of the bodies ``only`` are read, or all if it is empty.
 
     Raises:
         NotALogError: the path is not a log, or the log contains no configuration and ``config`` is None.
@@ -99,9 +95,7 @@ def recording_of_log(path: Path, *, config: Path | None = None, only: Collection
 def bodies_of_log(path: Path, *, config: Path | None = None) -> list[str]:
     """Return the names of the bodies in ``config``, or else in a log's own configuration.
 
-    Raises:
-        NotALogError: the path is not a log, or the log contains no configuration and ``config`` is None.
-        ConfigurationError: a parameter is missing, or has a value that is not allowed.
+    The errors are those of `recording_of_log`.
     """
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", DamagedLogWarning)

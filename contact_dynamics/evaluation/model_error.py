@@ -94,8 +94,7 @@ class ModelError(Record):
 def model_error_of(path: Path, name: str = "--calibration") -> ModelError:
     """Return the model errors in a JSON file of `calibrate`.
 
-    Raises:
-        InvalidFieldError: it cannot be read, or is no such file. The message names ``name``.
+    Raise `InvalidFieldError`, about ``name``, if it cannot be read, or is no such file.
     """
     try:
         content = json.loads(path.read_text(encoding="utf-8"))

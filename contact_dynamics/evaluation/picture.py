@@ -66,16 +66,10 @@ class _Cell(Record):
 def write_picture(
     path: Path, evaluation: Evaluation, sources: Sequence[Source], *, config: Path | None
 ) -> int:
-    """Draw the first events of an evaluation into a file, and return how many were drawn.
+    """Draw the first events of an evaluation into a file, which is replaced, and return how many were drawn.
 
-    Args:
-        path: The file, which is overwritten.
-        evaluation: The results.
-        sources: The recordings, of which those with drawn events are read again.
-        config: Parameter file with their bodies (`Source.read`).
-
-    Raises:
-        OSError: the file cannot be written.
+    The ``sources`` with drawn events are read again, with the bodies in the parameter file ``config``
+    (`Source.read`). Raise `OSError` if the file cannot be written.
     """
     cells = []
     for cell in _cells(evaluation, sources, config):

@@ -45,11 +45,8 @@ def evaluate_recording(
 ) -> SourceResult:
     """Find the events of a recording, predict each from earlier states, and return the comparisons.
 
-    Args:
-        recording: Measured states, and the configuration with which events are found.
-        settings: Horizons, laws and fit window.
-        informed: Configuration for the predictions, by default that of the recording.
-        share: (k, n): predict only the k-th of n equal parts of each motion's events, k from 0.
+    The configuration ``informed`` is used for the predictions, by default that of the recording. With a
+    ``share`` (k, n), only the k-th of n equal parts of each motion's events is predicted, k from 0.
     """
     part, parts = share
     events: list[FoundEvent] = []

@@ -63,9 +63,7 @@ class Evaluation(Record):
 def read_evaluation(path: Path) -> Evaluation:
     """Return an evaluation that was written as JSON.
 
-    Raises:
-        InvalidFieldError: the file does not contain an evaluation.
-        OSError: the file cannot be read.
+    Raise `InvalidFieldError` if the file does not contain an evaluation, and `OSError` if it cannot be read.
     """
     try:
         content = json.loads(path.read_text(encoding="utf-8"))
@@ -142,11 +140,7 @@ COLUMNS: Final = (
 
 
 def write_csv(path: Path, evaluation: Evaluation) -> None:
-    """Write a row for each comparison; a cell without a value is empty.
-
-    Raises:
-        OSError: the file cannot be written.
-    """
+    """Write a row for each comparison; a cell without a value is empty. Raise `OSError` if that fails."""
     with path.open("w", newline="", encoding="utf-8") as stream:
         writer = csv.writer(stream)
         writer.writerow(COLUMNS)
@@ -156,9 +150,7 @@ def write_csv(path: Path, evaluation: Evaluation) -> None:
 def write_parquet(path: Path, evaluation: Evaluation) -> None:
     """Write a row for each comparison; a cell without a value is null.
 
-    Raises:
-        NotSupportedError: PyArrow is not installed.
-        OSError: the file cannot be written.
+    Raise `NotSupportedError` if PyArrow is not installed, and `OSError` if the file cannot be written.
     """
     try:
         import pyarrow as pa

@@ -53,9 +53,7 @@ class Source(Record):
     def digest(self) -> str:
         """Return a hash of the content, 64 hexadecimal digits, which does not depend on the path.
 
-        Raises:
-            NotALogError: the path contains no log.
-            OSError: a file cannot be read.
+        Raise `NotALogError` if the path contains no log, and `OSError` if a file cannot be read.
         """
         files = [self.path] if self.is_toss else BagReader(self.path).paths
         hashes = [_hash_of(file.resolve(), file.stat().st_mtime_ns) for file in files]
@@ -69,13 +67,9 @@ class Source(Record):
     def read(self, *, config: Path | None = None) -> Recording:
         """Return the content of the recording.
 
-        Args:
-            config: Parameter file with the bodies, surfaces and topics of a log, by default the log's own
-                record. A toss contains its own body and surface.
-
-        Raises:
-            ContactDynamicsError: the content is invalid.
-            OSError: a file cannot be read.
+        The parameter file ``config`` contains the bodies, surfaces and topics of a log, by default the log's
+        own record. A toss contains its own body and surface. Raise `ContactDynamicsError` if the content is
+        invalid, and `OSError` if a file cannot be read.
         """
         if self.is_toss:
             return recording_of_toss(read_toss(self.path, index=self.index))
@@ -106,11 +100,9 @@ class Source(Record):
 def find_sources(paths: Iterable[str]) -> tuple[list[Source], list[tuple[str, str]]]:
     """Return the recordings at the paths of a command line, in their order.
 
-    A path is a log's folder, one file of a log (MCAP or SQLite), a toss in CSV, an ``.npz`` of tosses, one
-    toss of it (``tosses.npz#17``), or a folder that is searched for all of these at any depth.
-
-    Returns:
-        The sources, and the paths without a recording, each with the reason.
+    The second value is the paths without a recording, each with the reason. A path is a log's folder, one
+    file of a log (MCAP or SQLite), a toss in CSV, an ``.npz`` of tosses, one toss of it (``tosses.npz#17``),
+    or a folder that is searched for all of these at any depth.
     """
     sources: list[Source] = []
     refused: list[tuple[str, str]] = []

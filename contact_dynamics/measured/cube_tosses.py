@@ -61,10 +61,8 @@ ORIENTATION_NOISE: Final = 3.5e-4  # rad. Residuals of rotation vectors are 0.01
 def read_cube_toss(path: Path, *, index: int = 0) -> Toss:
     """Return toss ``index`` of the file, from 0.
 
-    The first `FEWEST_FRAMES` - 1 frames are left out, since no velocity is known there.
-
-    Raises:
-        InvalidFieldError: an array is missing or has another shape, or the index is out of range.
+    The first `FEWEST_FRAMES` - 1 frames are left out, since no velocity is known there. Raise
+    `InvalidFieldError` if an array is missing or has another shape, or the index is out of range.
     """
     data, offsets = _load(path)
     count = len(offsets) - 1
@@ -92,11 +90,7 @@ def read_cube_toss(path: Path, *, index: int = 0) -> Toss:
 
 
 def count_cube_tosses(path: Path) -> int:
-    """Return the number of tosses in a file.
-
-    Raises:
-        InvalidFieldError: an array is missing or has another shape.
-    """
+    """Return the number of tosses in a file, or raise `InvalidFieldError` if its arrays are invalid."""
     return len(_load(path)[1]) - 1
 
 

@@ -20,12 +20,8 @@ def read_toss(path: str | Path = DEFAULT_RECORDING, *, index: int | None = None)
     """Return the toss at a path: a recording in this project's CSV format, or a cube toss in an `.npz` file.
 
     ``index``, or a path that ends in ``#17`` or ``:17``, selects a toss of an `.npz` file, by default the
-    first one.
-
-    Raises:
-        FileNotFoundError: there is no such file.
-        InvalidFieldError: the file is neither `.csv` nor `.npz`, its content is invalid, or the index is out
-            of range.
+    first one. Raise `FileNotFoundError` if there is no such file, and `InvalidFieldError` if it is neither
+    `.csv` nor `.npz`, its content is invalid, or the index is out of range.
     """
     file, chosen = _split_index(path)
     if index is not None:

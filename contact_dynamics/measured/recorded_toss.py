@@ -142,9 +142,8 @@ _HEADER_LINE: Final = re.compile(r"# (\w+)(?: \[([^\]]*)\])?: (.*)")
 def read_toss_csv(path: Path) -> Toss:
     """Return the toss in a CSV file.
 
-    Raises:
-        InvalidFieldError: a header line is missing or has another unit, the column names differ, or a sample
-            does not consist of numbers.
+    Raise `InvalidFieldError` if a header line is missing or has another unit, the column names differ, or a
+    sample does not consist of numbers.
     """
     header, rows = _split(path)
     names = rows[0].split(",") if rows else []

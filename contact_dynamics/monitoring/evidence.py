@@ -202,11 +202,9 @@ def inverse_of_known(information: FloatArray) -> FloatArray:
 
 
 def alternatives(configured: FloatArray, parameter: int) -> FloatArray:
-    """Return pairs of coefficients, (k, 2), of which one differs from the configured one.
+    """Return pairs of coefficients, (k, 2), of which one differs from the configured one, (2,).
 
-    Args:
-        configured: (2,), restitution and friction.
-        parameter: 0 for restitution, 1 for friction.
+    The ``parameter`` is 0 for restitution, and 1 for friction.
     """
     value = float(configured[parameter])
     if value <= 0.0:
@@ -220,13 +218,9 @@ def alternatives(configured: FloatArray, parameter: int) -> FloatArray:
 def evidence_of(
     event: FoundEvent, answer: ImpactAnswer, world: World, error: ModelError
 ) -> ImpactEvidence | None:
-    """Return what an impact shows, or None if it is not one of a single contact with a known covariance.
+    """Return the evidence of a measured impact, or None without a single contact and a known covariance.
 
-    Args:
-        event: The measured impact.
-        answer: The prediction from the states before it, with its covariance.
-        world: The bodies and gravity of the prediction.
-        error: Model errors.
+    The ``answer`` is the prediction from the states before it, in the ``world``, with its covariance.
     """
     covariance, contacts = answer.impact.covariance, answer.contacts
     if event.several or covariance is None or len(contacts) != 1 or contacts.restitutions is None:

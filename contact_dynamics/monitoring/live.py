@@ -92,8 +92,7 @@ class Monitoring(Receiving):
     ) -> None:
         """Begin the log and subscribe, without monitoring; ``error`` is the model error of predictions.
 
-        Raises:
-            ConfigurationError: a source or the log's folder does not exist (see `Receiving`).
+        The errors are those of `Receiving`.
         """
         import_module("scipy.stats")  # with what answers: imported at the first event, it would delay states
         for service in SERVICES:

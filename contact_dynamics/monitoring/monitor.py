@@ -138,12 +138,7 @@ class Monitor:
     """
 
     def __init__(self, informed: Informed, settings: MonitorSettings | None = None) -> None:
-        """Begin without states.
-
-        Args:
-            informed: What is configured.
-            settings: Settings; the default has no model error.
-        """
+        """Begin without states. Without ``settings``, there is no model error."""
         self.informed = informed
         self._settings = settings or MonitorSettings()
         self._asking = Settings(
@@ -153,12 +148,9 @@ class Monitor:
         self._changes: defaultdict[str, SurfaceChanges] = defaultdict(SurfaceChanges)
 
     def add(self, body_name: str, state: KnownState, arrival_ns: int) -> list[MonitoredEvent]:
-        """Add a state, and return the events that are final now.
+        """Add a state of a configured body, and return the events that are final now.
 
-        Args:
-            body_name: Name of a configured body.
-            state: Its state, with a stamp.
-            arrival_ns: When it was known, ns, on the clock of the stamps.
+        ``arrival_ns`` is the time of its arrival, ns, on the clock of the stamps.
         """
         track, found = self._tracks[body_name], list[MonitoredEvent]()
         now_ns, every_ns = state.stamp_ns, to_ns(LOOK_EVERY)
@@ -172,12 +164,12 @@ class Monitor:
         return found
 
     def settle(self, body_name: str) -> list[MonitoredEvent]:
-        """Return the events of a body that are left, as `add` does when a state comes `SILENT` later."""
+        """Return the remaining events of a body, as `add` does for a state `SILENT` later."""
         track = self._tracks[body_name]
         return self._look(body_name, track, track.newest_ns + 1)
 
     def finish(self) -> list[MonitoredEvent]:
-        """Return the events that are left, and forget the states, but not what is known of the surfaces."""
+        """Return the remaining events, and discard the states, but not the estimates of the surfaces."""
         found = [event for body_name in list(self._tracks) for event in self.settle(body_name)]
         self._tracks.clear()
         return found

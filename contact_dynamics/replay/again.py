@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Recomputes the responses of a log's server from its configuration and the states that it had received.
 
-It shares the server's core (`nodes.server_core`), and needs no ROS.
+It shares the server's core (`nodes.server_core`), and requires no ROS.
 """
 
 from __future__ import annotations
@@ -48,8 +48,7 @@ class ServerAgain(ServerCore):
     def __init__(self, source: ParameterSource) -> None:
         """Read the configuration from a log's record of its run or from a file.
 
-        Raises:
-            ConfigurationError: a parameter is missing, or one is not allowed.
+        Raise `ConfigurationError` if a parameter is missing or not allowed.
         """
         super().__init__(read_server_parameters(source))
         self.expect()
@@ -60,12 +59,12 @@ class ServerAgain(ServerCore):
 
     @property
     def topics(self) -> frozenset[str]:
-        """The topics that answers depend on."""
+        """The topics that responses depend on."""
         return frozenset({*self.sources, CLOCK, *self.topics_of_changes})
 
     @property
     def topics_of_changes(self) -> frozenset[str]:
-        """The topics of changes of the configuration, which the log of a server has."""
+        """The topics of changes of the configuration, which only the log of a server has."""
         return frozenset({CHANGES} if isinstance(self._source, LoggedParameters) else ())
 
     def receive(self, message: LoggedMessage, *, is_live: bool = True) -> list[tuple[str, BodyState]]:
@@ -127,7 +126,7 @@ class ServerAgain(ServerCore):
         try:
             question = self.question_of(service, request)
             self.fill(service, service.answer(question, at_instant(question, self.context)), response)
-        except Exception as error:  # noqa: BLE001  the server reports a fault of its own too, and goes on
+        except Exception as error:  # noqa: BLE001  the server reports its internal errors too
             response = make_response()
             report_error(response, error)
         return response

@@ -3,7 +3,7 @@
 
 `LoggedEvents` are read from a log of the server. `AskedEvents` are the states of any recording, and the
 responses that a server would have returned to requests made on replay. Their clock is that of the states'
-stamps. Each request is made at a state, and uses only what was published by then.
+stamps. Each request is made at a state, and uses only the states published by then.
 """
 
 from __future__ import annotations
@@ -137,7 +137,7 @@ class Events(ABC):
     @property
     @abstractmethod
     def why_empty(self) -> str:
-        """Why there is no question, in words, where there is none."""
+        """The reason, as text, if there are no questions."""
 
     @property
     def refused(self) -> Mapping[str, Refused]:
@@ -161,9 +161,8 @@ class LoggedEvents(Events):
     def __init__(self, path: Path, *, span: Span = EVERYTHING, states: bool = True) -> None:
         """Read the configuration of the run. Iteration reads a span, with states and events or without.
 
-        Raises:
-            NotALogError: it is no log, or none of the server.
-            ConfigurationError: its record of the run lacks a parameter, or has one that is not allowed.
+        Raise `NotALogError` if it is not a log of the server, and `ConfigurationError` if its record of the
+        run lacks a parameter, or has an invalid one.
         """
         _, server = server_of_log(path)
         super().__init__(BagReader(path), server)
@@ -178,13 +177,13 @@ class LoggedEvents(Events):
 
     @property
     def why_empty(self) -> str:
-        """Why there is no question, in words, where there is none."""
+        """The reason, as text, if there are no questions."""
         return "the log contains no requests with a response; --ask makes predictions from its states"
 
     def __iter__(self) -> Iterator[Event]:
         """Read the log; each response follows the states that were known when its request arrived."""
         with warnings.catch_warnings():
-            warnings.simplefilter("ignore", DamagedLogWarning)  # told by `damage`
+            warnings.simplefilter("ignore", DamagedLogWarning)  # reported by `damage`
             again = BagReader(self._path)
             for each in in_order(self._reader, again, self._topics, span=self._span):
                 if isinstance(each, ServiceCall):
@@ -272,7 +271,7 @@ QUESTIONS: Final[Mapping[str, Callable[..., Question[Answer]]]] = {
     IMPACT: ImpactQuestion,
     MODES: ContactModeQuestion,
 }
-"""What can be asked about a body and a state."""
+"""The requests about a body and a state."""
 
 
 class AskedEvents(Events):
@@ -293,12 +292,10 @@ class AskedEvents(Events):
 
         The requests ``names``, of `QUESTIONS`, are made about ``bodies``, or about all bodies if it is empty,
         with a period of ``every``, s, by the stamps; 0 means at each state. The motion is fitted to the
-        states of the last ``fit_window``, s; 0 means to the newest one.
+        states of the last ``fit_window``, s; 0 means to the latest one.
 
-        Raises:
-            NotALogError: it is no recording.
-            ConfigurationError: a parameter is missing or not allowed.
-            InvalidFieldError: one of ``bodies`` is not configured.
+        Raise `NotALogError` if it is not a recording, `ConfigurationError` if a parameter is missing or not
+        allowed, and `InvalidFieldError` if one of ``bodies`` is not configured.
         """
         reader = BagReader(path)
         stand_in(())
@@ -317,7 +314,7 @@ class AskedEvents(Events):
 
     @property
     def why_empty(self) -> str:
-        """Why there is no question, in words, where there is none."""
+        """The reason, as text, if there are no questions."""
         if not self._names:
             return f"no prediction was requested; --ask must be one of {', '.join(QUESTIONS)}"
         bodies = ", ".join(self._bodies or [body.name for body in self.world.bodies]) or "no body"
@@ -328,7 +325,7 @@ class AskedEvents(Events):
         """Read the recording, and make the requests that are due after each state."""
         topics = self._server.topics
         with warnings.catch_warnings():
-            warnings.simplefilter("ignore", DamagedLogWarning)  # told by `damage`
+            warnings.simplefilter("ignore", DamagedLogWarning)  # reported by `damage`
             for message in self._reader.messages(
                 topics, start_ns=self._span.start_ns, end_ns=self._span.end_ns
             ):

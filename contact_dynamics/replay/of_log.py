@@ -43,11 +43,11 @@ def server_of_log(
 ) -> tuple[dict[str, str], ServerAgain]:
     """Return the record of a log's run, and a server configured by it.
 
-    ``instead`` contains values, by name, that replace parameters of the record.
+    The values ``instead`` replace parameters of the record, by name.
 
     Raises:
-        NotALogError: it is no log, or none of the server.
-        ConfigurationError: its record of the run lacks a parameter, or has one that is not allowed.
+        NotALogError: it is not a log of the server.
+        ConfigurationError: its record of the run lacks a parameter, or has an invalid one.
         NotSupportedError: the log's services differ in their fields from this version's; or ROS is not
             installed, and another log in this process defined a message with different fields.
     """
@@ -96,9 +96,7 @@ def digest(event_type: str, definition: str) -> str:
 def check_definitions(path: Path, definitions: Mapping[str, str], version: str | None) -> None:
     """Reject a log, written by ``version``, whose services differ in their definitions from this version's.
 
-    Raises:
-        NotSupportedError: there is such a service, or one that this version does not have. The message names
-            it, and the version that wrote the log.
+    Raise `NotSupportedError` with their names and the version.
     """
     known = {f"{INTERFACES}{service.type_name}{EVENT_SUFFIX}": service.digest for service in SERVICES}
     differing = [
@@ -131,8 +129,7 @@ _PARTS: Final = ("_Request", "_Response", EVENT_SUFFIX)
 def stand_in(definitions: Iterable[tuple[str, str]]) -> None:
     """Make missing message modules importable, from pairs of a type's name and its definition.
 
-    Raises:
-        NotSupportedError: a type of this name was defined before, with different fields.
+    Raise `NotSupportedError` if a type of this name was defined before, with different fields.
     """
     modules = {name: _module(name) for name in _PACKAGES if _is_missing(name)}
     for type_name, text in definitions:

@@ -158,11 +158,8 @@ _OF_THE_STATE: Final = ("stamp.sec", "stamp.nanosec", "fit_count")  # fields tha
 def publish(given: argparse.Namespace, of_ros: list[str], *, span: Span) -> int:
     """Publish a log as the arguments say; return the exit code.
 
-    It is 1 if a request got no response or a different one, or if there was nothing to publish.
-
-    Raises:
-        NotALogError: the path is not a recording; or it is not one of the server, and requests were to be
-            repeated.
+    It is 1 if a request got no response or a different one, or if nothing was published. Raise `NotALogError`
+    if the path is not a recording, or not one of the server although requests are to be repeated.
     """
     path = Path(given.log)
     start_ns, end_ns = BagReader(path).extent()
@@ -238,11 +235,11 @@ class _LogPublisher:
             time.sleep(_POLL_S)
 
     def play(self, pacing: Pacing, progress: Progress) -> bool:
-        """Publish the log once; return False where it was told to stop before its end."""
+        """Publish the log once; return False if it was stopped before its end."""
         self._next_tick_ns = 0
         begun = False
         with warnings.catch_warnings():
-            warnings.simplefilter("ignore", DamagedLogWarning)  # what is left is published
+            warnings.simplefilter("ignore", DamagedLogWarning)  # the rest is published
             for each in self._events():
                 log_ns = _time_of(each)
                 if log_ns is None:

@@ -350,12 +350,12 @@ def _of_states(
 
 
 WITHIN: Final = 0.1
-"""s. A state that is older than this when an answer's time comes says nothing of it any more."""
+"""s. Largest age of a state from which the outcome is extrapolated."""
 
 AFTER_IMPACT: Final = 0.05  # s. Span of the states after an impact to which the flight is fitted.
 
 _AT_IMPACT: Final = 1
-"""States after an impact that do not count, since the impact can come a little later than predicted."""
+"""Number of states after an impact that are left out, since it may be a little later than predicted."""
 
 
 class Measuring:

@@ -222,8 +222,7 @@ def _events(path: Path, given: argparse.Namespace) -> Events:
 def _span(path: Path, given: argparse.Namespace) -> Span:
     """Return the part of a log between --start and --end, which are relative to its beginning.
 
-    Raises:
-        InvalidFieldError: this part of the log is empty. The message contains the log's length.
+    Raise `InvalidFieldError`, with the log's length, if this part is empty.
     """
     if given.start == 0.0 and given.end is None:
         return Span()
@@ -294,8 +293,7 @@ BYTES_PER_MB = 1e6
 def info(path: Path) -> str:
     """Return the contents of a log as text for a terminal. Each message is read once.
 
-    Raises:
-        NotALogError: there is no log at the path.
+    Raise `NotALogError` if there is no log at the path.
     """
     log = BagReader(path)
     messages: Counter[tuple[str, str]] = Counter()

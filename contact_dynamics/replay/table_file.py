@@ -48,7 +48,7 @@ _FOR_PANDAS: Final = {
         }
     )
 }
-"""Lets pandas keep integers where a cell is empty, and not make floats of them, which have no room for ns."""
+"""Makes pandas read columns with empty cells as integers instead of floats, which cannot represent ns."""
 
 
 def log_to_frame(log: Path | str) -> Any:
@@ -85,13 +85,9 @@ def log_to_frame(log: Path | str) -> Any:
 def open_table(path: Path | None) -> Iterator[Write]:
     """Yield a function that writes a row. The file appears when the context ends, unless there are no rows.
 
-    Args:
-        path: a file with the suffix `CSV` or `PARQUET`, which is replaced. None means CSV on the standard
-            output.
-
-    Raises:
-        InvalidFieldError: the file has another suffix.
-        NotSupportedError: the format is Parquet, and pyarrow is not installed.
+    The file has the suffix `CSV` or `PARQUET`, and is replaced. If the path is None, CSV is written to the
+    standard output. Raise `InvalidFieldError` for another suffix, and `NotSupportedError` if pyarrow is not
+    installed.
     """
     if path is None:
         yield _csv(sys.stdout)

@@ -52,8 +52,7 @@ def in_order(
 def part_of(event: LoggedMessage, part: str) -> Any:
     """Return the "request" or the "response" in an event.
 
-    Raises:
-        InvalidFieldError: the event has none, since its service was introspected without contents.
+    Raise `InvalidFieldError` if there is none, since the service was introspected without contents.
     """
     contents: list[Any] = getattr(decode_without_ros(event), part)
     if not contents:

@@ -33,7 +33,7 @@ if TYPE_CHECKING:
     from contact_dynamics.replay.again import ServerAgain
 
 _PUBLISHERS: Final = re.compile(r" \(\d+ publishers?\)")
-"""In a message: how many publishers there were, which no log has. It is not compared either."""
+"""The number of publishers in a message, which is not in the log, and not compared either."""
 
 _LONGEST_VALUE: Final = 120  # characters; a response can contain pages of text
 
@@ -41,7 +41,7 @@ _QUATERNION: Final = "geometry_msgs/Quaternion"
 _QUATERNIONS: Final = "orientations"  # how the names of lists of quaternions end, row-major (n, 4)
 
 MEASURED: Final = frozenset({"computation_time"})
-"""These fields of a response say how the answer was made, not what it is. They are not compared."""
+"""Fields of a response that describe the computation, not its result. They are not compared."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

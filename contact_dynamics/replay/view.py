@@ -36,12 +36,9 @@ class Drawn(NamedTuple):
 def draw(name: str, events: Events, sinks: Sinks, *, surface_side: float, progress: Progress) -> Drawn:
     """Draw the recording of that name. A served picture remains available until `KeyboardInterrupt`.
 
-    Failures to draw are reported on the terminal, each kind once. Surfaces are squares of ``surface_side``,
-    m.
-
-    Raises:
-        NowhereToDrawError: only a viewer was requested, and there is none.
-        OSError: the file cannot be written.
+    Errors in drawing are reported on the terminal, each kind once. Surfaces are squares of ``surface_side``,
+    m. Raise `NowhereToDrawError` if only a viewer was requested, and there is none, and `OSError` if the file
+    cannot be written.
     """
     raise_errors()
     recording = OpenRecording(sinks, on_problem=_tell_problem)
@@ -132,7 +129,7 @@ class _Drawing:
     def _guarded(self, kind: str, show: Callable[[], object]) -> None:
         try:
             show()
-        except Exception as error:  # noqa: BLE001  what one answer has must not cost the picture of the rest
+        except Exception as error:  # noqa: BLE001  the rest of the picture must not depend on one answer
             if kind not in self._told:
                 self._told.add(kind)
                 _tell_problem(f"cannot draw {kind}; not reported again: {type(error).__name__}: {error}")

@@ -106,9 +106,8 @@ class OpenRecording:
     def __init__(self, sinks: Sinks, *, on_problem: Callable[[str], object]) -> None:
         """Open the sinks. If a viewer cannot be reached, report it, and still write the file.
 
-        Raises:
-            OSError: the file cannot be written.
-            NowhereToDrawError: a viewer was requested without a file, and there is none.
+        Raise `OSError` if the file cannot be written, and `NowhereToDrawError` if a viewer was requested
+        without a file, and there is none.
         """
         self.stream = KeptRecording()
         self._sinks = sinks
