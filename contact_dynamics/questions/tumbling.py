@@ -6,7 +6,9 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Final
 
-from contact_dynamics.contact.touches import lowest_along
+import numpy as np
+
+from contact_dynamics.contact.touches import lowest_along, site_of
 from contact_dynamics.errors import TooLargeError
 from contact_dynamics.motion.covariance import CarriedCovariance, covariance_along
 from contact_dynamics.motion.forces import NO_DRAG, NO_WRENCH, ConstantWrench, Drag
@@ -34,11 +36,12 @@ from contact_dynamics.questions.subject import (
 )
 from contact_dynamics.rigid_body.body import BodyState
 from contact_dynamics.rotations.many import matrices_of
+from contact_dynamics.shapes.obstacle import Obstacle
 from contact_dynamics.tumbling import FreeMotion, Trajectory, free_motion
 from contact_dynamics.tumbling.flips import Flips, next_flips
 from contact_dynamics.tumbling.poinsot_construction import Poinsot, RollingCurves, poinsot, rolling_curves
 from contact_dynamics.validation import FloatArray, check_array, check_whole
-from contact_dynamics.world import Body, Surface
+from contact_dynamics.world import Body
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -48,6 +51,7 @@ if TYPE_CHECKING:
     from contact_dynamics.motion.free_fit import FitResult
     from contact_dynamics.motion.integrated import ChosenMotion
     from contact_dynamics.rigid_body.body import MassProperties
+    from contact_dynamics.shapes.convex import ConvexShape
 
 FLIPS: Final = 3  # number of next flips in an answer
 
@@ -56,6 +60,9 @@ MAX_COVARIANCES: Final = 2000
 
 MAX_CARRIED_TURNS: Final = 30.0
 """Longest motion under torque or drag with covariances, in turns. It takes 1 or 2 s of computing."""
+
+_SAMPLES_TRIED: Final = 50
+"""Samples beside an obstacle at which its gap to the body is computed."""
 
 MAX_CURVE_POINTS: Final = 10_000
 """Largest number of points of polhode and herpolhode in one answer. More would stall the middleware."""
@@ -137,8 +144,8 @@ class TumblingAnswer(Answer):
         poinsot: Poinsot's construction of the rotation, or None if a torque acts.
         flips: Next flips about the intermediate axis, or None if a torque acts.
         curves: Polhode and herpolhode, or None if not requested or if a torque acts.
-        warnings: Planes that the body would penetrate at some of the times, since the motion is not stopped
-            by contacts, and uncertain motions of carried surfaces.
+        warnings: Planes and obstacles that the body would penetrate at some of the times, since the motion is
+            not stopped by contacts, and uncertain motions of carried surfaces.
     """
 
     body_name: str
@@ -194,22 +201,46 @@ def answer(question: TumblingQuestion, context: Context | None = None) -> Tumbli
 
 
 def _passed(body: Body, trajectory: Trajectory, known: Context) -> tuple[str, ...]:
-    """Return a warning for each flat surface that the body would be in at some time."""
+    """Return a warning for each plane and obstacle that the body would be in at some time."""
     if body.shape.is_empty:
         return ()
-    found, R_WB = [], matrices_of(trajectory.q_WB)
+    found, R_WB, tolerance = [], matrices_of(trajectory.q_WB), known.defaults.distance_tolerance
     for surface in known.world.surfaces:
-        if isinstance(surface, Surface) and surface.is_steady:
+        if isinstance(surface, Obstacle):
+            gaps = _gaps_to(surface, body.shape, trajectory.p_WB_W, R_WB, tolerance)
+        elif surface.is_steady:
             normal_W = surface.normal_W
             gaps = lowest_along(body.shape, trajectory.p_WB_W, R_WB, normal_W) - normal_W @ surface.p_WS_W
-            deep = gaps < -known.defaults.distance_tolerance
-            if deep.any():
-                first = int(deep.argmax())
-                found.append(
-                    f"free flight ignores surfaces: at sample {first} {body.name!r} would be "
-                    f"{-gaps[first]:.3g} m deep in {surface.name!r}"
-                )
+        else:
+            continue
+        deep = gaps < -tolerance
+        if deep.any():
+            first = int(deep.argmax())
+            found.append(
+                f"free flight ignores surfaces: at sample {first} {body.name!r} would be "
+                f"{-gaps[first]:.3g} m deep in {surface.name!r}"
+            )
     return tuple(found)
+
+
+def _gaps_to(
+    obstacle: Obstacle, shape: ConvexShape, p_WB_W: FloatArray, R_WB: FloatArray, tolerance: float
+) -> FloatArray:
+    """Return gaps between a body and an obstacle, (n,), m, which are exact up to the first one below zero.
+
+    The obstacle's faces separate most poses. At the others, the shapes are compared.
+    """
+    gaps = np.full(len(p_WB_W), -np.inf)
+    for normal_W in obstacle.features.normals:
+        level = float((obstacle.vertices_W @ normal_W).max())
+        gaps = np.maximum(gaps, lowest_along(shape, p_WB_W, R_WB, normal_W) - level)
+    near = np.flatnonzero(gaps < -tolerance)
+    gaps[near[_SAMPLES_TRIED:]] = 0.0
+    for i in near[:_SAMPLES_TRIED].tolist():
+        gaps[i] = site_of(shape, p_WB_W[i], R_WB[i], obstacle).gap
+        if gaps[i] < -tolerance:
+            break
+    return gaps
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)

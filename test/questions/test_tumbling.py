@@ -22,8 +22,11 @@ from contact_dynamics.questions import (
     UntilContact,
     UntilPlane,
 )
+from contact_dynamics.questions.context import Context
 from contact_dynamics.questions.tumbling import MAX_CURVE_POINTS, answer
+from contact_dynamics.shapes import Obstacle
 from contact_dynamics.tumbling import Regime
+from contact_dynamics.world import World, box_vertices
 from questions.known_world import CONTEXT, CUBE, GRAVITY, MASS, MOMENT, SIDE, state
 
 ROUNDING = 1e-12  # a few operations on numbers of order 1 to 10
@@ -62,6 +65,24 @@ def test_a_flight_through_the_floor_is_a_warning_that_names_the_first_sample_in_
             )
         else:
             assert found.warnings == ()
+
+
+@pytest.mark.parametrize(("aside", "warned"), [(0.0, True), (0.199, True), (0.201, False)])
+def test_a_flight_through_an_obstacle_is_a_warning(aside: float, warned: bool) -> None:  # noqa: FBT001
+    """The cube of 0.2 m falls past a box of the same size, or through it from 0.2 m above its top."""
+    corners = box_vertices((SIDE, SIDE, SIDE)) + np.array([aside, 0.0, 0.0])
+    box = Obstacle(name="box", vertices_W=corners, friction=0.3, restitution=0.0)
+    known = Context(world=World(bodies=(CUBE,), surfaces=(box,)))
+    times = np.linspace(0.0, 1.0, 101)
+    found = answer(TumblingQuestion(body="cube", state=state(0.4), sampling=AtTimes(times=times)), known)
+    if not warned:
+        assert found.warnings == ()
+        return
+    (warning,) = found.warnings
+    first = int(np.argmax(0.5 * GRAVITY * times**2 > 0.2))
+    assert warning.startswith(f"free flight ignores surfaces: at sample {first} 'cube' would be ")
+    deep = min(0.5 * GRAVITY * times[first] ** 2 - 0.2, SIDE - aside)
+    assert warning.endswith(f"{deep:.3g} m deep in 'box'")
 
 
 def test_stamps_reach_into_the_past() -> None:
