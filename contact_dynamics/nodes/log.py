@@ -99,8 +99,8 @@ class Log:
             return
         self._hung = time.monotonic()
         self._on_problem(
-            f"the disk took longer than {_SETTLES_IN_S:g} s: for {_TRUSTS_AFTER_S:g} s, answers leave "
-            "before they are on it"
+            f"the disk took longer than {_SETTLES_IN_S:g} s: for {_TRUSTS_AFTER_S:g} s, responses "
+            "are sent before they are on it"
         )
 
     def change_run(self, run: Mapping[str, str]) -> None:

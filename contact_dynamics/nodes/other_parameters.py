@@ -22,7 +22,7 @@ MEGABYTE: Final = 10**6
 MOST: Final = 10**6  # largest size of a file, MB, and largest number of files
 
 _DECLARED: Final = (
-    DeclaredParameter("server", "/contact_dynamics", "Full name of the server node whose answers are drawn."),
+    DeclaredParameter("server", "/contact_dynamics", "Full name of the server, whose responses are drawn."),
     DeclaredParameter(
         "monitor", "/contact_dynamics_monitor", "Full name of the monitor node whose events are listed."
     ),

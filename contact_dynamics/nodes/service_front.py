@@ -110,7 +110,7 @@ class ServiceFront:
 
     def refuse_all(self) -> int:
         """Reject the requests that workers process, and those that wait; return their number."""
-        error = BusyError("the server ended, or was cleaned up, before the answer was there")
+        error = BusyError("the server ended, or was cleaned up, before the response was computed")
         rejected, self._under_way = [*self._under_way, *self._waiting()], set()
         for call in rejected:
             self._finish(call, error)
@@ -223,7 +223,7 @@ class ServiceFront:
         if call.client:
             self.gone.note(call.client)
             self._node.get_logger().warning(
-                f"{self._served.name}: an answer did not reach its client, which left or is not found yet",
+                f"{self._served.name}: a response did not reach its client, which left or is undiscovered",
                 throttle_duration_sec=_WARN_EVERY_S,
             )
 

@@ -101,7 +101,7 @@ class Situation(Enum):
     LOG_DROPPING = Present(Part.LOG, Level.ERROR, "{problem}; {lost} messages are lost so far")
     LOG_REJECTING = Present(Part.LOG, Level.WARN, "{problem}")
     LOG_NOT_AWAITED = Present(
-        Part.LOG, Level.WARN, "the disk took too long, and answers are sent before they are on it"
+        Part.LOG, Level.WARN, "the disk took too long, and responses are sent before they are on it"
     )
 
     def present(self, **found: object) -> Present:

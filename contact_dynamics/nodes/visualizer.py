@@ -168,7 +168,7 @@ class Visualizer(InboxNode):
             self.take_messages()
         if self._answers:
             self.get_logger().warning(
-                f"{len(self._answers)} answers are not drawn: they still waited after {_LEFT_S:g} s"
+                f"{len(self._answers)} responses are not drawn: they still waited after {_LEFT_S:g} s"
             )
         self._states.draw()
         if self._sinks.viewer is ViewerMode.NONE:
@@ -191,7 +191,7 @@ class Visualizer(InboxNode):
         deadline = time.monotonic() + patience
         while not all(subscription.get_publisher_count() for subscription in events):
             if time.monotonic() > deadline:
-                self.get_logger().info(f"waiting for {server}: its answers are drawn once it runs")
+                self.get_logger().info(f"waiting for {server}: its responses are drawn once it runs")
                 return
             time.sleep(_POLL_S)
 

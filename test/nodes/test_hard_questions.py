@@ -151,7 +151,7 @@ def test_answers_that_are_ready_while_the_server_ends_do_not_make_it_fail() -> N
         client.spin_until(pending[-1].done)
         refused = pending[-1].result()
         assert refused.status == refused.BUSY
-        assert refused.message == "the server ended, or was cleaned up, before the answer was there"
+        assert refused.message == "the server ended, or was cleaned up, before the response was computed"
 
 
 def test_the_server_ends_soon_whatever_is_being_computed() -> None:

@@ -123,7 +123,7 @@ def test_a_disk_that_hangs_is_told_of_and_not_waited_for_again(tmp_path: Path) -
         waited.append(time.monotonic() - begun)
     assert waited[0] >= 1.0
     assert min(waited[1:]) < 0.1  # the least of four, because a busy machine may let any of them wait
-    assert told == ["the disk took longer than 1 s: for 10 s, answers leave before they are on it"]
+    assert told == ["the disk took longer than 1 s: for 10 s, responses are sent before they are on it"]
     assert log.present() == [Situation.LOG_NOT_AWAITED.present()]
     fail()
     log.close()

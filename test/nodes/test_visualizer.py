@@ -257,7 +257,7 @@ def test_it_stops_in_time_although_many_answers_wait(bench: Bench, capfd: pytest
         events.callback(Taken(data, time.time_ns(), None))
     drawn = bench.drawn()
     assert 0 < len(drawn.values["/answers/log", "TextLog:text"]) < count
-    assert "answers are not drawn: they still waited after 2 s" in capfd.readouterr().err
+    assert "responses are not drawn: they still waited after 2 s" in capfd.readouterr().err
 
 
 def test_strictly_it_raises(bench: Bench) -> None:
