@@ -35,19 +35,15 @@ def report(found: Calibration) -> str:
 
 
 def _used(found: Calibration) -> Iterator[str]:
-    strikes = sum(len(each.strikes) for each in found.observed)
+    strikes, tosses = sum(len(each.strikes) for each in found.observed), len(found.observed)
     yield f"Body {found.body.name!r} on {', '.join(surface.name for surface in found.surfaces) or 'nothing'}"
     yield (
-        f"{_tosses(len(found.observed))}: {sum(len(each.flights) for each in found.observed)} flights, "
+        f"{tosses} toss{'es' * (tosses != 1)}: {sum(len(each.flights) for each in found.observed)} flights, "
         f"{sum(each.first is not None for each in found.observed)} first flights long enough, {strikes} "
         f"impacts of a single corner, "
         f"{sum(each.several for each in found.observed)} of several corners (not used), "
         f"{sum(each.rest is not None for each in found.observed)} rests"
     )
-
-
-def _tosses(count: int) -> str:
-    return "1 toss" if count == 1 else f"{count} tosses"
 
 
 def _parameters(found: Calibration) -> Iterator[str]:

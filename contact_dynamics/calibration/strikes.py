@@ -26,7 +26,6 @@ if TYPE_CHECKING:
     from contact_dynamics.calibration.first_flights import IntArray
     from contact_dynamics.calibration.model import Described
     from contact_dynamics.calibration.observed import Observed
-    from contact_dynamics.measured.flight_fit import MeasuredState
     from contact_dynamics.measured.motion import MeasuredMotion
     from contact_dynamics.validation import FloatArray
 
@@ -114,14 +113,10 @@ def strikes_of(observed: Sequence[Observed], *, ratios: FloatArray | None) -> St
         times=np.array([strike.time for _, _, strike in found]),
         q_WB=np.array([before.state.q_WB for before, _ in states]).reshape(-1, 4),
         p_W=np.array(places).reshape(-1, 3),
-        stds=np.array([_place_std(*both) for both in states]),
+        stds=np.array([0.5 * float(np.hypot(a.position_std, b.position_std)) for a, b in states]),
         before=before,
         after=after,
     )
-
-
-def _place_std(before: MeasuredState, after: MeasuredState) -> float:
-    return 0.5 * float(np.hypot(before.position_std, after.position_std))
 
 
 def _fitted(motion: MeasuredMotion, frames: slice, time: float, ratios: FloatArray | None) -> tuple[Any, ...]:

@@ -138,7 +138,8 @@ class BlockPublisher(Node):
         It waits for subscribers of the states and of the sensor first, up to a maximum time.
         """
         deadline = time.monotonic() + _DISCOVERY_S
-        while self._lacks_listeners() and time.monotonic() < deadline:
+        publishers = (self._states, self._sensor)
+        while any(each.get_subscription_count() == 0 for each in publishers) and time.monotonic() < deadline:
             if stop.wait(0.02):
                 return
         begin_ns = self.get_clock().now().nanoseconds
@@ -148,9 +149,6 @@ class BlockPublisher(Node):
             if stop.wait(max(0.0, to_seconds(stamp_ns - self.get_clock().now().nanoseconds))):
                 return
             self._publish(stamp_ns)
-
-    def _lacks_listeners(self) -> bool:
-        return any(each.get_subscription_count() == 0 for each in (self._states, self._sensor))
 
     def _publish(self, stamp_ns: int) -> None:
         self._states.publish(

@@ -153,11 +153,7 @@ def _write(given: argparse.Namespace, evaluation: Evaluation) -> None:
         for path in write_plots(given.plots, evaluation):
             print(f"drawn: {path}")
     if given.rerun is not None:
-        _draw(given, evaluation)
+        from contact_dynamics.evaluation.picture import write_picture  # imports rerun
 
-
-def _draw(given: argparse.Namespace, evaluation: Evaluation) -> None:
-    from contact_dynamics.evaluation.picture import write_picture  # imports rerun
-
-    drawn = write_picture(given.rerun, evaluation, find_sources(given.recordings)[0], config=given.config)
-    print(f"drawn: {given.rerun} with {drawn} events")
+        drawn = write_picture(given.rerun, evaluation, find_sources(given.recordings)[0], config=given.config)
+        print(f"drawn: {given.rerun} with {drawn} events")

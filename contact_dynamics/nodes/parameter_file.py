@@ -123,7 +123,7 @@ def check_sections(path: Path, sections: Sequence[Section], full_name: str) -> s
         raise ConfigurationError(f"{path}: {'; '.join(twice)}")
     others = [section.node for section in sections if not section.is_for(full_name)]
     if len(others) == len(sections):
-        nearest = _nearest(others, full_name)
+        nearest = difflib.get_close_matches(full_name, others, n=1, cutoff=0.0)[0]
         raise ConfigurationError(
             f"{path} must have parameters of {ANY_NODE} or {full_name}, got only those of "
             f"{' and of '.join(others)}, which do not apply to this node; {nearest} is the nearest name"
@@ -162,10 +162,6 @@ def _given(arguments: Sequence[str]) -> Iterator[re.Match[str]]:
         match = _GIVEN.fullmatch(text) if flag in {"-p", "--param"} else None
         if match is not None:
             yield match
-
-
-def _nearest(names: Sequence[str], full_name: str) -> str:
-    return difflib.get_close_matches(full_name, names, n=1, cutoff=0.0)[0]
 
 
 def _is_misspelled(name: str, full_name: str) -> bool:

@@ -273,7 +273,7 @@ class BodyWatch:
         return [
             *self._of_sources(),
             *self._of_rejections(arrivals, now),
-            *self._of_age(arrivals),
+            *([Situation.OLD.present(body=self._name, age=arrivals.age)] if self._is_old else []),
             *(self._of_silence(arrivals) if silence > silent_after else []),
         ]
 
@@ -292,9 +292,6 @@ class BodyWatch:
         if now - self._rejected_at < RECENT_S:
             return [Situation.SOME_REJECTED.present(body=self._name, reason=arrivals.reason)]
         return []
-
-    def _of_age(self, arrivals: Arrivals) -> list[Present]:
-        return [Situation.OLD.present(body=self._name, age=arrivals.age)] if self._is_old else []
 
     def _of_silence(self, arrivals: Arrivals) -> list[Present]:
         names = " and ".join(dict.fromkeys(topic.name for topic in self._topics))

@@ -356,12 +356,6 @@ class _Primitive:
     mass: MassMaker  # makes a mass, kg, that fills the shape evenly
 
 
-def _of_cylinder(radius: float, length: float, mass: float) -> MassDistribution:
-    if length == 0.0:
-        return inertia.disc(radius=radius, mass=mass)
-    return inertia.cylinder(radius=radius, length=length, mass=mass)
-
-
 _PRIMITIVES: Final = {
     "box": _Primitive(
         description="Full side lengths of a box, m: x, y, z.",
@@ -385,7 +379,11 @@ _PRIMITIVES: Final = {
         description="Radius and length of a cylinder about z, m; of length 0 a disc.",
         checks=(check_positive, check_not_negative),
         shape=lambda sizes: convex_shape.cylinder(radius=sizes[0], length=sizes[1]),
-        mass=lambda sizes, mass: _of_cylinder(sizes[0], sizes[1], mass),
+        mass=lambda sizes, mass: (
+            inertia.cylinder(radius=sizes[0], length=sizes[1], mass=mass)
+            if sizes[1]
+            else inertia.disc(radius=sizes[0], mass=mass)
+        ),
     ),
     "cone": _Primitive(
         description="Radius of the base, at z = 0, and height of a cone about z, m.",

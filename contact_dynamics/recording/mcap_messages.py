@@ -161,15 +161,12 @@ class _Definitions:
         if channel.message_encoding not in _ENCODINGS:
             return Topic(channel.topic, "", "")
         offered, type_hash = channel.metadata.get(OFFERED_QOS, ""), channel.metadata.get(TYPE_HASH, "")
-        return Topic(channel.topic, schema.name, _ros2msg(schema), offered, type_hash)
+        text = schema.data.decode(errors="replace") if schema.encoding == "ros2msg" else ""
+        return Topic(channel.topic, schema.name, text, offered, type_hash)
 
     @property
     def _summary(self) -> Summary:
         return self._walk.summary or Summary()
-
-
-def _ros2msg(schema: Schema) -> str:
-    return schema.data.decode(errors="replace") if schema.encoding == "ros2msg" else ""
 
 
 _CHUNK: Final = struct.Struct("<QQQII")  # earliest and latest time, size, checksum, length of the next field

@@ -175,7 +175,7 @@ class Recorder(AbstractContextManager["Recorder"]):
         with self._lock:
             self._given += 1
             waiting = self._waiting_bytes + size
-            open_ = self._is_open()
+            open_ = self._is_writing() and not self._closing
             taken = open_ and waiting <= self._max_waiting_bytes
             if taken:
                 self._items.append(_Item(topic, data, log_time_ns, publish_time_ns))
@@ -204,9 +204,6 @@ class Recorder(AbstractContextManager["Recorder"]):
         with self._lock:
             if not self._dead and not self._closing:
                 self._items.append(_RunChange(run))
-
-    def _is_open(self) -> bool:
-        return not (self._dead or self._closing or self._interruption is not None)
 
     def settle(self, *, timeout_s: float = 10.0) -> bool:
         """Wait until all messages recorded so far are on the disk, and return whether they are.

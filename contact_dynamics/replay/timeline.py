@@ -38,7 +38,8 @@ def in_order(
     """
     states = states_from.messages(topics, start_ns=span.start_ns, end_ns=span.end_ns)
     state = next(states, None)
-    for call in service_calls(_events(calls_from, span)):
+    messages = calls_from.messages(start_ns=span.start_ns, end_ns=span.end_ns)
+    for call in service_calls(message for message in messages if is_event_of_ours(message)):
         if call.request_event is not None:
             while state is not None and state.log_time_ns <= call.request_event.log_time_ns:
                 yield state
@@ -67,8 +68,3 @@ def is_event_of_ours(message: LoggedMessage) -> bool:
         and message.type_name.startswith(INTERFACES)
         and message.type_name.endswith(EVENT_SUFFIX)
     )
-
-
-def _events(log: BagReader, span: Span) -> Iterator[LoggedMessage]:
-    messages = log.messages(start_ns=span.start_ns, end_ns=span.end_ns)
-    return (message for message in messages if is_event_of_ours(message))

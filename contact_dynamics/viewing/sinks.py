@@ -368,7 +368,7 @@ class RrdFiles:
     def roll(self) -> None:
         """Begin the next file if this one is full, or if writing to it failed."""
         self.check()
-        if self._place is not None and not self._is_full():
+        if self._place is not None and (self._size <= 0 or 0 <= self._length() < self._size):
             return
         try:
             sink = self._next()
@@ -403,9 +403,6 @@ class RrdFiles:
         except RuntimeError:
             return False
         return True
-
-    def _is_full(self) -> bool:
-        return self._size > 0 and not 0 <= self._length() < self._size
 
     def _length(self) -> int:
         """Return the size of the newest file, bytes, or -1 if it was removed."""

@@ -121,12 +121,9 @@ class StatesInTurn:
 
 def _by_stamps(states: list[BodyState]) -> Iterator[list[BodyState]]:
     """Yield states by their stamps, but those since the clock was last set back after the others."""
-    falls = (i for i in range(len(states) - 1, 0, -1) if _is_set_back(states[i - 1], states[i]))
+    stamps_ns, back_ns = [state.stamp_ns for state in states], to_ns(SET_BACK_S)
+    falls = (i for i in range(len(states) - 1, 0, -1) if stamps_ns[i - 1] - stamps_ns[i] > back_ns)
     begin = next(falls, 0)
     for part in (states[:begin], states[begin:]):
         if part:
             yield sorted(part, key=lambda state: state.stamp_ns)
-
-
-def _is_set_back(before: BodyState, after: BodyState) -> bool:
-    return before.stamp_ns - after.stamp_ns > to_ns(SET_BACK_S)
