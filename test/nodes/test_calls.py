@@ -8,7 +8,7 @@ import time
 
 import pytest
 
-from contact_dynamics.nodes.calls import CallTimes, GoneClients
+from contact_dynamics.nodes.service_front import CallTimes, GoneClients
 from contact_dynamics.recording.cdr import EventType
 from contact_dynamics_interfaces.srv import PredictTumbling
 
