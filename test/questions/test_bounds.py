@@ -102,6 +102,17 @@ def test_what_takes_too_long_is_refused_by_name(name: str) -> None:
     assert says(str(refused.value), words)
 
 
+FAR = ContactSet(p_WC_W=[[1.7e308, 0, 0]], normals_W=[[0, 0, 1]], frictions=[0.3], restitutions=[0.0])
+GRIPPING = ContactSet(
+    p_WC_W=[[0, 0, 0], [1, 1, 0]], normals_W=[[0.6, 0, 0.8], [0, 0, 1]], frictions=[1.0, 1e300]
+)
+DUST = Body(name="", mass_properties=MassProperties(mass=1e-31, I_B=np.eye(3)))
+
+
+def modes(**changes: Any) -> ContactModeQuestion:
+    return ContactModeQuestion(**{"body": "cube", "state": state(), "contacts": ring(3), **changes})
+
+
 @pytest.mark.parametrize(
     ("question", "words"),
     [
@@ -111,55 +122,17 @@ def test_what_takes_too_long_is_refused_by_name(name: str) -> None:
             "p_WB_W must be at most 1e+15 for contacts..., got 1e+16",
         ),
         (
-            ContactModeQuestion(
-                body="cube", state=state(v=(0.0, 0.0, 1e16)), contacts=ring(3), include_margins=True
-            ),
-            "v_WB_W must be at most 1e+15 for contacts..., got 1e+16",
+            modes(state=state(v=(0.0, 0.0, 1e16)), include_margins=True),
+            "v_WB_W must be at most 1e+15..., got 1e+16",
         ),
+        (modes(state=state(w=(0.0, 0.0, -1e16))), "w_WB_W must be at most 1e+15 for contacts..., got 1e+16"),
+        (modes(body=DUST), "mass must be in [1e-30, 1e+30] for contacts..., got 1e-31"),
+        (modes(force_W=[-1e100, 0, 0]), "force_W must be ..., got 1e+100"),
+        (modes(contacts=FAR), "contacts.p_WC_W must be ..., got 1.7e+308 m"),
+        (modes(contacts=GRIPPING), "contacts.frictions must be at most 1e+10..., got 1e+300"),
         (
-            ContactModeQuestion(body="cube", state=state(w=(0.0, 0.0, -1e16)), contacts=ring(3)),
-            "w_WB_W must be at most 1e+15 for contacts..., got 1e+16",
-        ),
-        (
-            ContactModeQuestion(
-                body=Body(name="", mass_properties=MassProperties(mass=1e-31, I_B=np.eye(3))),
-                state=state(),
-                contacts=ring(3),
-            ),
-            "mass must be in [1e-30, 1e+30] for contacts..., got 1e-31",
-        ),
-        (
-            ContactModeQuestion(body="cube", state=state(), contacts=ring(3), force_W=[-1e100, 0, 0]),
-            "force_W must be ..., got 1e+100",
-        ),
-        (
-            ImpactQuestion(
-                body="cube",
-                state=state(v=(0.0, 0.0, -1.0)),
-                contacts=ContactSet(
-                    p_WC_W=[[1.7e308, 0, 0]], normals_W=[[0, 0, 1]], frictions=[0.3], restitutions=[0.0]
-                ),
-            ),
-            "contacts.p_WC_W must be ..., got 1.7e+308 m",
-        ),
-        (
-            ContactModeQuestion(
-                body="cube",
-                state=state(),
-                contacts=ContactSet(
-                    p_WC_W=[[0, 0, 0], [1, 1, 0]],
-                    normals_W=[[0.6, 0, 0.8], [0, 0, 1]],
-                    frictions=[1.0, 1e300],
-                    restitutions=[0.0, 1.0],
-                ),
-            ),
-            "contacts.frictions must be at most 1e+10..., got 1e+300",
-        ),
-        (
-            ContactModeQuestion(
-                body="cube", state=state(), contacts=ring(3), include_statics=True, margin_length=5e-324
-            ),
-            "margin_length must be in [1e-15, 1e+15]..., got 4.94066e-324",
+            modes(include_statics=True, margin_length=5e-324),
+            "margin_length must be in [1e-15, 1e+15]..., got 4.9",
         ),
     ],
 )
