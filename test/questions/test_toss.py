@@ -11,15 +11,12 @@ import pytest
 from contact_dynamics.errors import ContactDynamicsError, InvalidFieldError, TooLargeError
 from contact_dynamics.impact import RestitutionLaw, SeveralContactsLaw
 from contact_dynamics.questions import Context, TossQuestion, TossSampling, UncertainState, ask
-from contact_dynamics.rigid_body import BodyState, inertia
-from contact_dynamics.shapes import box
+from contact_dynamics.rigid_body import BodyState
 from contact_dynamics.toss import TossEnd, TossEventKind, TossUncertainty, toss
 from contact_dynamics.world import Body, Surface, World
 
 SIZE = (0.1, 0.1, 0.1)
-CUBE = Body(
-    name="cube", mass_properties=inertia.box(size=SIZE, mass=0.37).mass_properties, shape=box(size=SIZE)
-)
+CUBE = Body.box(SIZE, mass=0.37, name="cube")
 FLOOR = Surface(name="floor", p_WS_W=[0, 0, 0], normal_W=[0, 0, 1], friction=0.2, restitution=0.15)
 KNOWN = Context(world=World(bodies=(CUBE,), surfaces=(FLOOR,)))
 THROWN = BodyState(

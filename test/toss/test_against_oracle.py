@@ -6,10 +6,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from contact_dynamics.rigid_body import inertia
 from contact_dynamics.rigid_body.body import BodyState
 from contact_dynamics.rotations.one import rotation_matrix
-from contact_dynamics.shapes import box
 from contact_dynamics.tolerances import GRAZING_DEPTH, PHASE_ERROR, SAMPLED_PHASE_ERROR
 from contact_dynamics.toss import Toss, TossEventKind, toss
 from contact_dynamics.toss.phase import PhaseStep
@@ -20,9 +18,7 @@ from sweeps import seeds
 
 SIZE = (0.1, 0.12, 0.07)
 MASS, GRAVITY = 0.4, 9.80665
-BRICK = Body(
-    name="brick", mass_properties=inertia.box(size=SIZE, mass=MASS).mass_properties, shape=box(size=SIZE)
-)
+BRICK = Body.box(SIZE, mass=MASS, name="brick")
 REACH = 0.5 * float(np.linalg.norm(SIZE))
 
 

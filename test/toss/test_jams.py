@@ -9,8 +9,7 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from contact_dynamics import Body, BodyState, MassProperties, Surface, World, inertia
-from contact_dynamics.shapes import box
+from contact_dynamics import Body, BodyState, MassProperties, Surface, World
 from contact_dynamics.toss import TossEnd, toss
 from contact_dynamics.toss.forces import pushed_by_contacts
 from contact_dynamics.toss.impacts import inelastic_impact
@@ -28,9 +27,7 @@ from sweeps import seeds, sweep
 
 G = 9.81
 SIZE = (0.1, 0.1, 0.1)
-CUBE = Body(
-    name="cube", mass_properties=inertia.box(size=SIZE, mass=0.4).mass_properties, shape=box(size=SIZE)
-)
+CUBE = Body.box(SIZE, mass=0.4, name="cube")
 
 
 def groove(friction: float, other: float | None = None, *, slope: float = 0.25 * math.pi) -> World:

@@ -8,17 +8,14 @@ from typing import Any
 import numpy as np
 import pytest
 
-from contact_dynamics import Body, BodyState, Surface, World, inertia
+from contact_dynamics import Body, BodyState, Surface, World
 from contact_dynamics.errors import InvalidFieldError
 from contact_dynamics.impact import RestitutionLaw
-from contact_dynamics.shapes import box
 from contact_dynamics.toss import TossUncertainty, sampled_toss
 from contact_dynamics.toss.uncertainty import MAX_INERTIA_SPREAD, MAX_SPREAD
 
 SIZE = (0.1, 0.08, 0.06)
-BRICK = Body(
-    name="brick", mass_properties=inertia.box(size=SIZE, mass=0.4).mass_properties, shape=box(size=SIZE)
-)
+BRICK = Body.box(SIZE, mass=0.4, name="brick")
 WORLD = World(
     bodies=(BRICK,),
     surfaces=(Surface(name="floor", p_WS_W=[0, 0, 0], normal_W=[0, 0, 1], friction=0.3, restitution=0.2),),

@@ -11,10 +11,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from contact_dynamics import Body, BodyState, Surface, World, inertia
+from contact_dynamics import Body, BodyState, Surface, World
 from contact_dynamics.errors import ContactDynamicsError, InvalidFieldError, NotSupportedError
 from contact_dynamics.rigid_body.body import kinetic_energy
-from contact_dynamics.shapes import box, cylinder, sphere
+from contact_dynamics.shapes import cylinder
 from contact_dynamics.toss import Toss, TossEnd, TossEventKind, UndecidedReason, toss
 from sweeps import seeds
 
@@ -27,9 +27,7 @@ def drawn(seed: int) -> tuple[Body, BodyState, World]:
     rng = np.random.default_rng(seed)
     size = tuple((0.05 + 0.15 * rng.random(3)).tolist())
     mass = 0.2 + rng.random()
-    body = Body(
-        name="box", mass_properties=inertia.box(size=size, mass=mass).mass_properties, shape=box(size=size)
-    )
+    body = Body.box(size, mass=mass, name="box")
     q = rng.normal(size=4)
     state = BodyState(
         p_WB_W=[0, 0, 0.5],
@@ -104,9 +102,7 @@ def test_the_motion_has_no_gaps_but_for_impulses(seed: int) -> None:
 def test_the_result_does_not_depend_on_the_steps() -> None:
     """A block that falls off its edge is long in contact, and no strike is close to another."""
     size = (0.06, 0.1, 0.16)
-    body = Body(
-        name="box", mass_properties=inertia.box(size=size, mass=0.5).mass_properties, shape=box(size=size)
-    )
+    body = Body.box(size, mass=0.5, name="box")
     angle = math.atan2(size[0], size[2]) + 0.05
     height = 0.5 * (size[2] * math.cos(angle) + size[0] * math.sin(angle))
     state = BodyState(p_WB_W=[0, 0, height], q_WB=[0.0, math.sin(0.5 * angle), 0.0, math.cos(0.5 * angle)])
@@ -124,9 +120,7 @@ def test_the_result_does_not_depend_on_the_steps() -> None:
 
 def test_a_box_that_lands_flat_tells_that_the_order_of_its_corners_is_open() -> None:
     size = (0.1, 0.1, 0.1)
-    cube = Body(
-        name="cube", mass_properties=inertia.box(size=size, mass=0.5).mass_properties, shape=box(size=size)
-    )
+    cube = Body.box(size, mass=0.5, name="cube")
     state = BodyState(p_WB_W=[0, 0, 0.1], q_WB=[0, 0, 0, 1], v_WB_W=[0.3, 0, 0])
     world = World(surfaces=(Surface(**FLOOR, friction=0.3, restitution=0.2),), gravity_W=[0, 0, -G])
     went = toss(cube, state, world, max_alternatives=3)
@@ -157,11 +151,7 @@ def test_bad_input_is_refused_by_name() -> None:
 def test_a_ball_that_rolls_on_for_years_ends_at_the_bound_on_steps(monkeypatch: pytest.MonkeyPatch) -> None:
     """Each step is short beside a turn, so a horizon without end would take as long."""
     monkeypatch.setattr("contact_dynamics.toss.simulation.MAX_STEPS", 200)
-    ball = Body(
-        name="ball",
-        mass_properties=inertia.sphere(radius=0.05, mass=0.3).mass_properties,
-        shape=sphere(radius=0.05),
-    )
+    ball = Body.sphere(0.05, mass=0.3, name="ball")
     floor = Surface(**FLOOR, friction=0.5, restitution=0.0)
     state = BodyState(p_WB_W=[0, 0, 0.05], q_WB=[0, 0, 0, 1], v_WB_W=[1, 0, 0])
     went = toss(ball, state, World(surfaces=(floor,)), horizon=1e9)

@@ -11,10 +11,8 @@ import pytest
 
 from contact_dynamics.errors import InvalidFieldError, NotSupportedError
 from contact_dynamics.impact import RestitutionLaw
-from contact_dynamics.rigid_body import inertia
 from contact_dynamics.rigid_body.body import BodyState, state_covariance
 from contact_dynamics.rotations.many import matrices_of
-from contact_dynamics.shapes import box
 from contact_dynamics.toss import TossDistribution, TossEventKind, TossUncertainty, sampled_toss, toss
 from contact_dynamics.toss.distribution import BranchKind, region_of, region_of_face
 from contact_dynamics.toss.law_spread import LawSpread
@@ -25,9 +23,7 @@ from contact_dynamics.world import Body, Surface, World
 from sweeps import seeds
 
 SIZE = (0.1, 0.12, 0.07)
-BRICK = Body(
-    name="brick", mass_properties=inertia.box(size=SIZE, mass=0.4).mass_properties, shape=box(size=SIZE)
-)
+BRICK = Body.box(SIZE, mass=0.4, name="brick")
 FLOOR = Surface(name="floor", p_WS_W=[0, 0, 0], normal_W=[0, 0, 1], friction=0.2, restitution=0.4)
 WORLD = World(bodies=(BRICK,), surfaces=(FLOOR,))
 

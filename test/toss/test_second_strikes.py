@@ -13,11 +13,9 @@ from benchmarks._toss_strikes import second_arrival
 from contact_dynamics.calibration.observed import observe
 from contact_dynamics.impact import RestitutionLaw
 from contact_dynamics.measured.motion import StateColumns, motions_of
-from contact_dynamics.rigid_body import inertia
 from contact_dynamics.rigid_body.body import BodyState
 from contact_dynamics.rotations.many import quaternions_of, rotation_vectors, turned
 from contact_dynamics.rotations.one import product
-from contact_dynamics.shapes import box
 from contact_dynamics.toss import TossEventKind, TossUncertainty, sampled_toss, toss
 from contact_dynamics.world import Body, Surface, World
 
@@ -25,11 +23,7 @@ if TYPE_CHECKING:
     from contact_dynamics.calibration.observed import Observed
     from contact_dynamics.toss import TossEvent
 
-CUBE = Body(
-    name="cube",
-    mass_properties=inertia.box(size=(0.1,) * 3, mass=0.4).mass_properties,
-    shape=box(size=(0.1,) * 3),
-)
+CUBE = Body.box((0.1,) * 3, mass=0.4, name="cube")
 FLOOR = Surface(name="floor", p_WS_W=[0, 0, 0], normal_W=[0, 0, 1], friction=0.16, restitution=0.3)
 WORLD = World(bodies=(CUBE,), surfaces=(FLOOR,))
 RATE = 148.0  # Hz

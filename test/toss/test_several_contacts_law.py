@@ -12,7 +12,7 @@ import pytest
 from contact_dynamics import Body, BodyState, Contact, ContactSet, Surface, World, inertia, several_impact
 from contact_dynamics.errors import InvalidFieldError
 from contact_dynamics.impact import RestitutionLaw, SeveralContactsLaw
-from contact_dynamics.shapes import box, polyhedron
+from contact_dynamics.shapes import polyhedron
 from contact_dynamics.toss import Toss, TossEventKind, sampled_toss, toss
 
 SIDES = 12
@@ -62,9 +62,7 @@ def test_a_coin_that_falls_flat_bounces_level(
 def test_the_strikes_of_one_instant_are_those_of_several_impact(law: SeveralContactsLaw) -> None:
     """A box lands on its edge, sliding and turning, so that the two ends come down at one instant."""
     size = (0.1, 0.16, 0.06)
-    brick = Body(
-        name="brick", mass_properties=inertia.box(size=size, mass=0.5).mass_properties, shape=box(size=size)
-    )
+    brick = Body.box(size, mass=0.5, name="brick")
     lean = 0.5 * 0.7
     state = BodyState(
         p_WB_W=[0, 0, 0.2],

@@ -13,10 +13,8 @@ import pytest
 
 from contact_dynamics.errors import InvalidFieldError
 from contact_dynamics.impact import RestitutionLaw
-from contact_dynamics.rigid_body import inertia
 from contact_dynamics.rigid_body.body import BodyState, state_covariance
 from contact_dynamics.rotations.many import matrices_of
-from contact_dynamics.shapes import box
 from contact_dynamics.toss import TossDistribution, TossUncertainty, sampled_toss
 from contact_dynamics.toss.distribution import FEWEST
 from contact_dynamics.toss.sampled import MAX_GHOSTS
@@ -27,9 +25,7 @@ if TYPE_CHECKING:
     from concurrent.futures import Executor
 
 SIZE = (0.1, 0.12, 0.07)
-BRICK = Body(
-    name="brick", mass_properties=inertia.box(size=SIZE, mass=0.4).mass_properties, shape=box(size=SIZE)
-)
+BRICK = Body.box(SIZE, mass=0.4, name="brick")
 FLOOR = Surface(name="floor", p_WS_W=[0, 0, 0], normal_W=[0, 0, 1], friction=0.2, restitution=0.3)
 CUBE = Body.box((0.1, 0.1, 0.1), mass=0.37, name="cube")
 COUNT = int(1.6 * PART)  # two parts
