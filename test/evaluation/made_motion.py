@@ -12,7 +12,7 @@ from contact_dynamics.evaluation.asking import Informed
 from contact_dynamics.evaluation.recording import Recording
 from contact_dynamics.measured.motion import MeasuredMotion, StateColumns, motions_of
 from contact_dynamics.questions import Defaults
-from contact_dynamics.shapes import box, sphere
+from contact_dynamics.shapes import sphere
 from oracles.bouncing_toss import MOMENTS, RATE, Leg, toss
 from oracles.rigid_flight import fly
 
@@ -25,11 +25,7 @@ BALL = Body(
     mass_properties=MassProperties(mass=0.4, I_B=np.diag(MOMENTS)),
     shape=sphere(radius=RADIUS),
 )
-BRICK = Body(
-    name="brick",
-    mass_properties=MassProperties(mass=0.4, I_B=np.diag(MOMENTS)),
-    shape=box(size=[0.15, 0.09, 0.05]),
-)
+BRICK = Body.box((0.15, 0.09, 0.05), mass=0.4, name="brick")
 
 
 class Bounces(NamedTuple):

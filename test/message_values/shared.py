@@ -17,15 +17,10 @@ from contact_dynamics.plane import PlaneOfMotion
 from contact_dynamics.questions import FitQuality
 from contact_dynamics.questions.many import ManyStates
 from contact_dynamics.tumbling import Trajectory
-from contact_dynamics.world import box_vertices
 
 T = TypeVar("T")
 NO_OFFSET = np.zeros(3)
-BRICK = Body(
-    name="brick",
-    mass_properties=MassProperties(mass=0.4, I_B=np.diag([3.5e-4, 8.3e-4, 1.02e-3])),
-    vertices_B=box_vertices((0.15, 0.09, 0.05)),
-)
+BRICK = Body.box((0.15, 0.09, 0.05), mass=0.4, name="brick")
 BAT = Body(name="bat", mass_properties=MassProperties(mass=0.9, I_B=0.01 * np.eye(3)))
 WORLD = World(bodies=(BRICK, BAT))
 NAMES = ("", "brick")

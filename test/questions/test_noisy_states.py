@@ -10,20 +10,15 @@ import pytest
 from scipy.spatial.transform import Rotation
 from scipy.stats import chi2, ncx2
 
-from contact_dynamics import Body, BodyState, MassProperties, ModeVerdict, Surface, World
+from contact_dynamics import Body, BodyState, ModeVerdict, Surface, World
 from contact_dynamics.contact.noise import REST_LEVEL
 from contact_dynamics.errors import InvalidFieldError
 from contact_dynamics.questions import ContactModeAnswer, ContactModeQuestion, Context, UncertainState, ask
 from contact_dynamics.questions.many_contact_modes import ManyContactModesQuestion
 from contact_dynamics.questions.many_contact_modes import answer as answer_many
-from contact_dynamics.world import box_vertices
 
 WEIGHT, FRICTION = 0.4 * 9.80665, 0.3  # N
-BRICK = Body(
-    name="brick",
-    mass_properties=MassProperties(mass=0.4, I_B=np.diag([0.000353333, 0.000833333, 0.00102])),
-    vertices_B=box_vertices([0.15, 0.09, 0.05]),
-)
+BRICK = Body.box((0.15, 0.09, 0.05), mass=0.4, name="brick")
 FLOOR = Surface(name="floor", p_WS_W=[0, 0, 0], normal_W=[0, 0, 1], friction=FRICTION, restitution=0.45)
 CONTEXT = Context(world=World(bodies=(BRICK,), surfaces=(FLOOR,)))
 MOTION_CAPTURE = np.array([2e-4, 2e-3, 0.02, 0.2])  # m, rad, m/s, rad/s

@@ -6,16 +6,14 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
-import numpy as np
 from nav_msgs.msg import Odometry
 from rclpy.serialization import serialize_message
 from rosbags.rosbag2 import CompressionFormat, CompressionMode, StoragePlugin
 from rosbags.rosbag2 import Writer as RosbagsWriter
 from rosbags.typesys import Stores, get_typestore
 
-from contact_dynamics import Body, BodyState, MassProperties, Surface, World, free_motion
+from contact_dynamics import Body, BodyState, Surface, World, free_motion
 from contact_dynamics.questions import Context, ImpactQuestion, ask
-from contact_dynamics.shapes import sphere
 from msg_adapters.stamps import stamp_to_msg
 
 START_NS = 1_700_000_000_000_000_000
@@ -34,11 +32,7 @@ CONFIGURATION = """
     surface.floor.friction: 0.4
     surface.floor.restitution: 0.5
 """
-BALL = Body(
-    name="ball",
-    mass_properties=MassProperties(mass=0.5, I_B=np.diag([0.002] * 3)),
-    shape=sphere(radius=0.1),
-)
+BALL = Body.sphere(0.1, mass=0.5, name="ball")
 FLOOR = Surface(name="floor", p_WS_W=[0, 0, 0], normal_W=[0, 0, 1], friction=0.4, restitution=0.5)
 WORLD = World(bodies=(BALL,), surfaces=(FLOOR,))
 THROWN = BodyState(

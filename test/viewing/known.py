@@ -5,15 +5,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from contact_dynamics import Body, BodyState, ContactSet, MassProperties, Surface, World, free_motion
-from contact_dynamics.world import box_vertices
+from contact_dynamics import Body, BodyState, ContactSet, Surface, World, free_motion
 from viewing.drawn import STAMP_NS
 
-BODY = Body(
-    name="brick",
-    mass_properties=MassProperties(mass=0.4, I_B=np.diag([3.5e-4, 8.3e-4, 1.02e-3])),
-    vertices_B=box_vertices((0.15, 0.09, 0.05)),
-)
+BODY = Body.box((0.15, 0.09, 0.05), mass=0.4, name="brick")
 FLOOR = Surface(name="floor", p_WS_W=[0, 0, 0], normal_W=[0, 0, 1], friction=0.3, restitution=0.5)
 WORLD = World(bodies=(BODY,), surfaces=(FLOOR,))
 STATE = BodyState(

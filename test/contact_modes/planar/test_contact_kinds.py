@@ -16,7 +16,7 @@ from contact_dynamics.errors import OutOfPlaneError
 from contact_dynamics.plane import PlanarBody, PlanarContact, PlanarVelocity, PlanarWrench, PlaneOfMotion
 from contact_dynamics.plane.projection import project_onto_plane
 from contact_dynamics.rigid_body import BodyState, MassProperties
-from contact_dynamics.shapes.convex import cylinder, sphere
+from contact_dynamics.shapes.convex import cylinder
 from contact_dynamics.world import Body, Surface, World
 from contact_modes.evidence import planar_problem, spatial_problem
 
@@ -142,11 +142,7 @@ def state(q: tuple[float, ...], v: tuple[float, ...], w: tuple[float, ...]) -> B
 
 
 def test_a_ball_found_on_the_floor_rolls_and_pivots_without_force_but_its_weight() -> None:
-    ball = Body(
-        name="ball",
-        mass_properties=MassProperties(mass=M, I_B=0.4 * M * R * R * np.eye(3)),
-        shape=sphere(radius=R),
-    )
+    ball = Body.sphere(R, mass=M, name="ball")
     now = state((0.1, 0.7, -0.1, 0.7), (1.0, -0.5, 0.0), (0.5 / R, 1.0 / R, 6.0))
     contacts = find_contacts(ball, now, World(surfaces=(FLOOR,)))
     answer = contact_modes(spatial_problem(ball.mass_properties, now, contacts, (0.0, 0.0, -M * G)))
