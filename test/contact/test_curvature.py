@@ -41,8 +41,8 @@ class Touching:
         self.contacts = ContactSet(
             p_WC_W=self.r[None],
             normals_W=self.normal[None],
-            frictions=np.zeros(1),
-            restitutions=np.zeros(1),
+            frictions=0.0,
+            restitutions=0.0,
             body_curvatures=self.side(*body),
             surface_curvatures=self.side(*surface),
         )
@@ -221,9 +221,7 @@ def test_the_plane_is_a_section_of_space(k_B: float, k_S: float) -> None:
 
 
 def test_without_curvatures_nothing_is_added() -> None:
-    plain = ContactSet(
-        p_WC_W=np.zeros((2, 3)), normals_W=[UP, UP], frictions=np.zeros(2), restitutions=np.zeros(2)
-    )
+    plain = ContactSet(p_WC_W=np.zeros((2, 3)), normals_W=UP, frictions=0.0, restitutions=0.0)
     np.testing.assert_array_equal(
         velocity_accelerations(plain, np.ones((2, 3)), np.ones(3)), np.zeros((2, 3))
     )
@@ -266,11 +264,7 @@ def test_so_they_are_in_the_plane(body: float, surface: float) -> None:
 def test_curvatures_follow_their_contacts() -> None:
     curvatures = Curvatures(along=[1.0, 2.0], across=[INF, 2.0], directions_W=[X, (0.0, 0.0, 0.0)])
     both = ContactSet(
-        p_WC_W=np.zeros((2, 3)),
-        normals_W=[UP, UP],
-        frictions=np.zeros(2),
-        restitutions=np.zeros(2),
-        body_curvatures=curvatures,
+        p_WC_W=np.zeros((2, 3)), normals_W=UP, frictions=0.0, restitutions=0.0, body_curvatures=curvatures
     )
     one = both.subset([1]).body_curvatures
     assert one is not None
@@ -283,7 +277,7 @@ def test_curvatures_follow_their_contacts() -> None:
         ContactSet(
             p_WC_W=np.zeros((1, 3)),
             normals_W=[UP],
-            frictions=np.zeros(1),
-            restitutions=np.zeros(1),
+            frictions=0.0,
+            restitutions=0.0,
             body_curvatures=curvatures,
         )

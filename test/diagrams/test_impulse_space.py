@@ -149,10 +149,7 @@ def test_a_contact_that_strikes_after_another_has_its_dots_on_its_lines() -> Non
         w_WB_W=np.array([-0.9, -0.1, 1.9]),
     )
     contacts = ContactSet(
-        p_WC_W=[[0.3, 0.1, 0.0], [-0.3, 0.0, 0.0]],
-        normals_W=np.array([[0.0, 0.0, 1.0]] * 2),
-        frictions=[0.3, 0.3],
-        restitutions=[0.5, 0.5],
+        p_WC_W=[[0.3, 0.1, 0.0], [-0.3, 0.0, 0.0]], normals_W=[0.0, 0.0, 1.0], frictions=0.3, restitutions=0.5
     )
     impact = several_impact(body, state, contacts)
     assert impact.order[:2] == (0, 1)

@@ -43,13 +43,7 @@ def moving(p: list[float], v: list[float], w: list[float] | None = None) -> Body
 def contacts_at(
     points: list[list[float]], *, normal: tuple[float, float, float], friction: float, restitution: float
 ) -> ContactSet:
-    n = len(points)
-    return ContactSet(
-        p_WC_W=np.array(points),
-        normals_W=np.tile(normal, (n, 1)),
-        frictions=np.full(n, friction),
-        restitutions=np.full(n, restitution),
-    )
+    return ContactSet(p_WC_W=np.array(points), normals_W=normal, frictions=friction, restitutions=restitution)
 
 
 # A ball with spin (Garwin 1969, with Coulomb's friction in place of an elastic tangential bounce)

@@ -23,7 +23,7 @@ INF = math.inf
 def contacts(n: int = 3, **sides: Curvatures) -> ContactSet:
     return ContactSet(
         p_WC_W=np.arange(3.0 * n).reshape(n, 3),
-        normals_W=np.tile([0.0, 0.0, 1.0], (n, 1)),
+        normals_W=[0.0, 0.0, 1.0],
         frictions=np.linspace(0.0, 1.0, n),
         restitutions=np.linspace(0.0, 1.0, n),
         surfaces=tuple("abcdef"[:n]),

@@ -142,12 +142,7 @@ def test_the_best_plane_of_a_body_at_rest_holds_a_principal_axis_as_normal() -> 
 def test_a_body_at_rest_is_seen_in_the_plane_of_its_contacts(azimuth: float, offset: float) -> None:
     round_body = MassProperties(mass=2.0, I_B=np.diag([0.2, 0.2, 0.4]))
     across = np.array([math.cos(azimuth), math.sin(azimuth), 0.0])
-    feet = ContactSet(
-        p_WC_W=[-0.5 * across, offset * across],
-        normals_W=[UP, UP],
-        frictions=np.full(2, 0.5),
-        restitutions=np.zeros(2),
-    )
+    feet = ContactSet(p_WC_W=[-0.5 * across, offset * across], normals_W=UP, frictions=0.5, restitutions=0.0)
     plane = best_plane(round_body, state(), feet, force_W=WEIGHT, torque_W=NONE)
     assert abs(plane.normal_W @ across) < 1e-15
     assert abs(plane.normal_W @ UP) < 1e-15
@@ -164,21 +159,13 @@ def test_a_body_at_rest_is_seen_in_the_plane_of_its_contacts(azimuth: float, off
 def test_contacts_that_name_no_plane_leave_it_to_the_principal_axes(
     places: list[tuple[float, float, float]],
 ) -> None:
-    count = len(places)
-    feet = ContactSet(
-        p_WC_W=np.array(places),
-        normals_W=np.array([UP] * count),
-        frictions=np.full(count, 0.5),
-        restitutions=np.zeros(count),
-    )
+    feet = ContactSet(p_WC_W=np.array(places), normals_W=UP, frictions=0.5, restitutions=0.0)
     plane = best_plane(BODY, state(), feet, force_W=WEIGHT, torque_W=NONE)
     assert max(abs(plane.normal_W[:2])) == pytest.approx(1.0, abs=1e-15)
 
 
 def test_normals_that_span_space_have_no_plane() -> None:
-    corner = ContactSet(
-        p_WC_W=np.zeros((3, 3)), normals_W=np.eye(3), frictions=np.full(3, 0.5), restitutions=np.zeros(3)
-    )
+    corner = ContactSet(p_WC_W=np.zeros((3, 3)), normals_W=np.eye(3), frictions=0.5, restitutions=0.0)
     with pytest.raises(OutOfPlaneError, match="span space"):
         best_plane(BODY, state(), corner, force_W=WEIGHT, torque_W=NONE)
 
@@ -228,9 +215,9 @@ def contacts(arms: list[tuple[float, ...]], frictions: list[float] | None = None
     n = len(arms)
     return ContactSet(
         p_WC_W=CENTRE + np.array(arms, dtype=float).reshape(-1, 3),
-        normals_W=np.tile([0.0, 0.0, 1.0], (n, 1)),
+        normals_W=[0.0, 0.0, 1.0],
         frictions=np.array(frictions or [0.5] * n),
-        restitutions=np.zeros(n),
+        restitutions=0.0,
     )
 
 

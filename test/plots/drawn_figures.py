@@ -123,12 +123,7 @@ def resting(*, in_plane: bool) -> ContactModeAnswer:
         ContactModeQuestion(
             body=Body(name="brick", mass_properties=BRICK, shape=box(size=(0.2, 0.1, 0.06))),
             state=BodyState(p_WB_W=[0.0, 0.0, 0.03], q_WB=[0.0, 0.0, 0.0, 1.0]),
-            contacts=ContactSet(
-                p_WC_W=corners,
-                normals_W=np.tile([0.0, 0.0, 1.0], (len(corners), 1)),
-                frictions=0.4,
-                restitutions=0.0,
-            ),
+            contacts=ContactSet(p_WC_W=corners, normals_W=[0.0, 0.0, 1.0], frictions=0.4, restitutions=0.0),
             force_W=[1.0, 0.0, 0.0],
             gravity_W=GRAVITY_W,
             problem=Problem.PLANAR if in_plane else Problem.SPATIAL,

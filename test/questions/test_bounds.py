@@ -43,12 +43,7 @@ def ring(count: int) -> ContactSet:
     """Contacts around the lower face of a body."""
     angles = np.linspace(0.0, 2.0 * math.pi, count, endpoint=False)
     points = np.column_stack([0.05 * np.cos(angles), 0.04 * np.sin(angles), np.zeros(count)])
-    return ContactSet(
-        p_WC_W=points,
-        normals_W=np.tile([0.0, 0.0, 1.0], (count, 1)),
-        frictions=np.full(count, 0.3),
-        restitutions=np.full(count, 0.5),
-    )
+    return ContactSet(p_WC_W=points, normals_W=[0.0, 0.0, 1.0], frictions=0.3, restitutions=0.5)
 
 
 TOO_LARGE = {

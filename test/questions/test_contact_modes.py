@@ -298,12 +298,7 @@ def test_a_value_that_would_be_ignored_is_an_error(
 
 def test_numbers_without_sense_are_refused() -> None:
     n = 1001
-    many = ContactSet(
-        p_WC_W=np.zeros((n, 3)),
-        normals_W=np.tile([0.0, 0.0, 1.0], (n, 1)),
-        frictions=np.zeros(n),
-        restitutions=np.zeros(n),
-    )
+    many = ContactSet(p_WC_W=np.zeros((n, 3)), normals_W=[0.0, 0.0, 1.0], frictions=0.0, restitutions=0.0)
     with pytest.raises(TooLargeError, match=r"contacts must be .*, got 1001 contacts"):
         answer(ContactModeQuestion(body=CUBE, state=state(), contacts=many))
 

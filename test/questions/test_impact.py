@@ -51,10 +51,7 @@ HALF = 0.5 * SIDE
 SLIDING = state(v=(5.0, 0.0, -1.0))  # fast enough to slide throughout
 HINT = "does the normal point into the first body"
 TWO_FEET = ContactSet(
-    p_WC_W=[[-HALF, 0, 1 - HALF], [HALF, 0, 1 - HALF]],
-    normals_W=[[0, 0, 1]] * 2,
-    frictions=[0, 0],
-    restitutions=[0, 0],
+    p_WC_W=[[-HALF, 0, 1 - HALF], [HALF, 0, 1 - HALF]], normals_W=[0, 0, 1], frictions=0, restitutions=0
 )
 
 

@@ -74,7 +74,7 @@ def draw_modes(picture: Picture, world: World, read_back: Callable[[Any], Any]) 
         state=resting,
         contacts=ContactSet(
             p_WC_W=[[-0.075, 0.0, 0.0], [0.075, 0.0, 0.0]],
-            normals_W=[[0.0, 0.0, 1.0]] * 2,
+            normals_W=[0.0, 0.0, 1.0],
             frictions=0.3,
             restitutions=0.5,
         ),

@@ -26,12 +26,7 @@ SOLVED = 1e-7  # relative: linear programs are solved to 1e-9, and their errors 
 
 
 def on_floor(points: list[tuple[float, ...]], friction: float) -> ContactSet:
-    n = len(points)
-    return ContactSet(
-        p_WC_W=np.array(points).reshape(-1, 3),
-        normals_W=np.tile([0.0, 0.0, 1.0], (n, 1)),
-        frictions=np.full(n, friction),
-    )
+    return ContactSet(p_WC_W=np.array(points).reshape(-1, 3), normals_W=[0.0, 0.0, 1.0], frictions=friction)
 
 
 def state(v: tuple[float, ...] = (0, 0, 0), w: tuple[float, ...] = (0, 0, 0)) -> BodyState:
@@ -46,9 +41,7 @@ def test_more_contacts_than_the_motion_has_dimensions(contacts: int) -> None:
     normals = np.column_stack([np.sin(lean) * np.cos(angles), np.sin(lean) * np.sin(angles), np.cos(lean)])
     chance = np.random.default_rng(contacts)
     cup = ContactSet(
-        p_WC_W=-normals + 0.1 * chance.normal(size=(contacts, 3)),
-        normals_W=normals,
-        frictions=np.full(contacts, 0.8),
+        p_WC_W=-normals + 0.1 * chance.normal(size=(contacts, 3)), normals_W=normals, frictions=0.8
     )
     wrench = np.array([0.3, 0.2, -WEIGHT, 0.1, 0.0, 0.2])
     problem = spatial_problem(BODY, state(), cup, wrench[:3], wrench[3:])

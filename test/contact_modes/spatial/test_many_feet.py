@@ -22,8 +22,8 @@ def ring(n: int, height: float = 0.2) -> ContactSet:
     angles = 2.0 * math.pi * np.arange(n) / n
     return ContactSet(
         p_WC_W=np.column_stack([np.cos(angles), np.sin(angles), np.full(n, -height)]),
-        normals_W=np.tile([0.0, 0.0, 1.0], (n, 1)),
-        frictions=np.full(n, FRICTION),
+        normals_W=[0.0, 0.0, 1.0],
+        frictions=FRICTION,
     )
 
 

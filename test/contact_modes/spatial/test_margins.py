@@ -42,9 +42,7 @@ def state(v: tuple[float, ...] = (0, 0, 0), w: tuple[float, ...] = (0, 0, 0)) ->
 def feet(height: float, friction: float) -> ContactSet:
     corners = [(-1.0, -0.5), (1.0, -0.5), (1.0, 0.5), (-1.0, 0.5)]
     return ContactSet(
-        p_WC_W=np.array([(x, y, -height) for x, y in corners]),
-        normals_W=np.tile([0.0, 0.0, 1.0], (4, 1)),
-        frictions=np.full(4, friction),
+        p_WC_W=np.array([(x, y, -height) for x, y in corners]), normals_W=[0.0, 0.0, 1.0], frictions=friction
     )
 
 
@@ -86,7 +84,7 @@ def turning_case(seed: int) -> tuple[BodyState, ContactSet, np.ndarray]:
     points = np.array([centre + chance.normal(size=3) for _ in range(2)])
     normals = np.array([centre + w * chance.normal() - point for point in points])
     contacts = ContactSet(
-        p_WC_W=points, normals_W=normals / np.linalg.norm(normals, axis=1)[:, None], frictions=np.full(2, 0.4)
+        p_WC_W=points, normals_W=normals / np.linalg.norm(normals, axis=1)[:, None], frictions=0.4
     )
     return state(tuple(-np.cross(w, centre)), tuple(w)), contacts, 3.0 * chance.normal(size=6)
 

@@ -19,9 +19,7 @@ from sweeps import seeds
 
 def upright(frictions: Any) -> ContactSet:
     n = len(frictions)
-    return ContactSet(
-        p_WC_W=np.zeros((n, 3)), normals_W=np.tile([0.0, 0.0, 1.0], (n, 1)), frictions=frictions
-    )
+    return ContactSet(p_WC_W=np.zeros((n, 3)), normals_W=[0.0, 0.0, 1.0], frictions=frictions)
 
 
 def in_space(mechanism: Mechanism) -> ResponseContactProblem:

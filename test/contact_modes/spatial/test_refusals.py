@@ -32,8 +32,8 @@ def on_floor(corners: list[tuple[float, float]], friction: float) -> ContactSet:
     n = len(corners)
     return ContactSet(
         p_WC_W=np.column_stack([np.array(corners), np.full(n, -HEIGHT)]),
-        normals_W=np.tile([0.0, 0.0, 1.0], (n, 1)),
-        frictions=np.full(n, friction),
+        normals_W=[0.0, 0.0, 1.0],
+        frictions=friction,
     )
 
 

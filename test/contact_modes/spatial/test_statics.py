@@ -38,7 +38,7 @@ def touching(
     return ContactSet(
         p_WC_W=np.array(points, dtype=float).reshape(-1, 3),
         normals_W=np.array(normals, dtype=float).reshape(-1, 3),
-        frictions=np.full(len(points), friction),
+        frictions=friction,
     )
 
 

@@ -137,10 +137,7 @@ def test_a_tilted_rod_strikes_with_one_end_and_then_with_the_other(e: float) -> 
 def test_strikes_that_come_together_are_those_of_the_sequential_law() -> None:
     """For a tilt towards zero the two strikes become those of the rod on two supports at once."""
     contacts = ContactSet(
-        p_WC_W=[[1.0, 0.0, 0.0], [-1.0, 0.0, 0.0]],
-        normals_W=np.tile(UP, (2, 1)),
-        frictions=np.zeros(2),
-        restitutions=np.full(2, 0.5),
+        p_WC_W=[[1.0, 0.0, 0.0], [-1.0, 0.0, 0.0]], normals_W=UP, frictions=0.0, restitutions=0.5
     )
     level = BodyState(p_WB_W=np.zeros(3), q_WB=IDENTITY, v_WB_W=[0.0, 0.0, -1.0])
     at_once = several_impact(ROD.mass_properties, level, contacts)
@@ -159,9 +156,9 @@ def test_named_points_strike_their_own_planes_alone() -> None:
     s, c = math.sin(tilt), math.cos(tilt)
     contacts = ContactSet(
         p_WC_W=[[c, 0.0, -s], [-c, 0.0, s]],
-        normals_W=np.tile(UP, (2, 1)),
-        frictions=np.zeros(2),
-        restitutions=np.full(2, 0.6),
+        normals_W=UP,
+        frictions=0.0,
+        restitutions=0.6,
         surfaces=("low", "high"),
     )
     state = BodyState(

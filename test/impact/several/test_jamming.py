@@ -160,7 +160,7 @@ def inconsistent_in_space(seed: int) -> tuple[MassProperties, BodyState, Contact
         p_WC_W=2.0 * chance.normal(size=(n, 3)),
         normals_W=normals,
         frictions=chance.uniform(0.3, 2.0, n),
-        restitutions=np.zeros(n),
+        restitutions=0.0,
     )
     body = MassProperties(mass=1.0, I_B=np.diag([0.1, 0.2, 0.25]))
     state = BodyState(p_WB_W=np.zeros(3), q_WB=[0.0, 0.0, 0.0, 1.0], v_WB_W=way)

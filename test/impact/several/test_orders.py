@@ -40,13 +40,7 @@ LAWS = [
 
 
 def floor_contacts(points: list[list[float]], *, friction: float, restitution: float) -> ContactSet:
-    n = len(points)
-    return ContactSet(
-        p_WC_W=np.array(points),
-        normals_W=np.tile([0.0, 0.0, 1.0], (n, 1)),
-        frictions=np.full(n, friction),
-        restitutions=np.full(n, restitution),
-    )
+    return ContactSet(p_WC_W=points, normals_W=[0.0, 0.0, 1.0], frictions=friction, restitutions=restitution)
 
 
 def falling(height: float, v: list[float], w: list[float] | None = None) -> BodyState:
@@ -271,10 +265,7 @@ def corners(seed: int, order: tuple[int, ...]) -> tuple[MassProperties, BodyStat
     places = np.array([[x, y, -0.1] for x in (-0.2, 0.2) for y in (-0.15, 0.15)])
     chosen = list(order)
     contacts = ContactSet(
-        p_WC_W=places[chosen],
-        normals_W=np.tile([0.0, 0.0, 1.0], (4, 1)),
-        frictions=frictions[chosen],
-        restitutions=np.full(4, 0.3),
+        p_WC_W=places[chosen], normals_W=[0.0, 0.0, 1.0], frictions=frictions[chosen], restitutions=0.3
     )
     return MassProperties(mass=1.0, I_B=np.diag([0.02, 0.03, 0.04])), state, contacts
 
