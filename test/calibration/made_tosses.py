@@ -86,11 +86,7 @@ def made_toss(truth: Truth, random: np.random.Generator) -> MeasuredMotion:
 
 
 def _measured(
-    truth: Truth,
-    before: BodyState,
-    after: BodyState,
-    center: np.ndarray,
-    random: np.random.Generator,
+    truth: Truth, before: BodyState, after: BodyState, center: np.ndarray, random: np.random.Generator
 ) -> MeasuredMotion | None:
     """The poses of both flights, or None if another corner strikes within them."""
     tilt = random.uniform(0.0, 2.0 * np.pi)

@@ -223,8 +223,7 @@ def test_a_long_recording_is_cut_into_its_tosses() -> None:
     first, second = made_tosses(TRUTH, 2, 10)
     later = second.times + first.times[-1] + 2.0
     joined = replace(
-        first,
-        **{name: np.concatenate([getattr(first, name), getattr(second, name)]) for name in COLUMNS},
+        first, **{name: np.concatenate([getattr(first, name), getattr(second, name)]) for name in COLUMNS}
     )
     joined = replace(joined, times=np.concatenate([first.times, later]))
     names = [each.name for each in observe("log", joined)]

@@ -131,14 +131,7 @@ def test_colours_say_what_a_region_is() -> None:
 
 def test_the_chart_suits_the_motion() -> None:
     wrench = PlanarWrench(f=(3.0, -4.0), moment=0.2)
-    assert isinstance(
-        chart_for(
-            SETS,
-            length=RHO,
-            applied=wrench,
-        ),
-        DirectionChart,
-    )
+    assert isinstance(chart_for(SETS, length=RHO, applied=wrench), DirectionChart)
     turning = wrench_sets(
         PlanarContactProblem(
             body=BODY,

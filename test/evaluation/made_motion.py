@@ -21,9 +21,7 @@ RADIUS = 0.08
 P_NOISE = 2e-4
 Q_NOISE = 1.75e-3
 BALL = Body(
-    name="ball",
-    mass_properties=MassProperties(mass=0.4, I_B=np.diag(MOMENTS)),
-    shape=sphere(radius=RADIUS),
+    name="ball", mass_properties=MassProperties(mass=0.4, I_B=np.diag(MOMENTS)), shape=sphere(radius=RADIUS)
 )
 BRICK = Body.box((0.15, 0.09, 0.05), mass=0.4, name="brick")
 

@@ -256,9 +256,7 @@ def test_killed_in_the_middle_it_goes_on_with_the_rest(
     assert resumed == at_once
 
 
-def test_without_ros_a_bar_tells_who_watches_how_far_it_is_and_leaves_no_trace(
-    tmp_path: Path,
-) -> None:
+def test_without_ros_a_bar_tells_who_watches_how_far_it_is_and_leaves_no_trace(tmp_path: Path) -> None:
     """The recordings take several times as long as the half second before it tells."""
     recordings = [tmp_path / f"{k}{DEFAULT_RECORDING.suffix}" for k in range(COPIES)]
     for recording in recordings:

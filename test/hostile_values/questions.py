@@ -102,10 +102,7 @@ QUESTIONS: Calls = {
     "AtStamps": (AtStamps, {"stamps_ns": [0, 1]}),
     "Defaults": (Defaults, {"horizon": 1.0}),
     "InTime": (InTime, {"strike_window": 0.05, "max_strikes": 10, "hold_step": 1e-3}),
-    "CarriedSurface": (
-        CarriedSurface,
-        {"body_name": "box", "surface": WORLD.surfaces[0]},
-    ),
+    "CarriedSurface": (CarriedSurface, {"body_name": "box", "surface": WORLD.surfaces[0]}),
     "Context": (Context, {"world": WORLD}),
     "TossQuestion": (TossQuestion, {"body": BOX, "horizon": 0.1, "rate": 100.0, "lasting_factors": [0.8]}),
     "TossSampling": (TossSampling, {"count": 10, "strikes": 1, "seed": 0}),

@@ -113,11 +113,7 @@ static_answers = st.builds(
     margin_length=st.just(math.nan),  # no message tells it
 )
 refused_modes = st.builds(
-    RefusedMode,
-    mode=texts,
-    refusal=st.sampled_from(Refusal),
-    contact=st.integers(-1, 9),
-    amount=numbers,
+    RefusedMode, mode=texts, refusal=st.sampled_from(Refusal), contact=st.integers(-1, 9), amount=numbers
 )
 
 

@@ -19,11 +19,7 @@ from contact_dynamics.impact import (
     SequenceStrike,
     SeveralContactsLaw,
 )
-from contact_dynamics.questions import (
-    ImpactAnswer,
-    NamedState,
-    Problem,
-)
+from contact_dynamics.questions import ImpactAnswer, NamedState, Problem
 from message_values.shared import (
     NAMES,
     NO_OFFSET,

@@ -7,10 +7,7 @@ import numpy as np
 from hypothesis import strategies as st
 
 from contact_dynamics.impact import ImpactOutcome
-from contact_dynamics.questions.many import (
-    ManyImpactsAnswer,
-    ManyTumblingsAnswer,
-)
+from contact_dynamics.questions.many import ManyImpactsAnswer, ManyTumblingsAnswer
 from contact_dynamics.questions.many_contact_modes import ManyContactModesAnswer
 from message_values.shared import (
     NAMES,

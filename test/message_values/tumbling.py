@@ -10,11 +10,7 @@ from hypothesis import strategies as st
 
 from contact_dynamics.motion.covariance import CarriedCovariance, PropagationMethod, orientation_deviations
 from contact_dynamics.motion.integrated import Method
-from contact_dynamics.questions import (
-    Event,
-    EventKind,
-    TumblingAnswer,
-)
+from contact_dynamics.questions import Event, EventKind, TumblingAnswer
 from contact_dynamics.tumbling import Flips, Poinsot, Regime, RollingCurves
 from contact_dynamics.tumbling.poinsot_construction import semi_axes
 from message_values.shared import (
@@ -68,9 +64,7 @@ def rotations(draw: st.DrawFn) -> tuple[Poinsot, Flips, RollingCurves | None]:
         sensitivity=draw(odd_numbers),
     )
     curves = RollingCurves(
-        seconds=draw(arrays(points)),
-        polhode_B=draw(arrays(points, 3)),
-        herpolhode_W=draw(arrays(points, 3)),
+        seconds=draw(arrays(points)), polhode_B=draw(arrays(points, 3)), herpolhode_W=draw(arrays(points, 3))
     )
     told = Flips(seconds=draw(arrays(flips)), deviations=draw(arrays(flips, of=odd_numbers)))
     return picture, told, curves if points else None

@@ -29,20 +29,8 @@ from message_values.contact_modes import (
     wrench_sets,
 )
 from message_values.impact import impact_answers, resolved_impacts
-from message_values.many import (
-    many_contact_modes_answers,
-    many_impacts_answers,
-    many_tumblings_answers,
-)
-from message_values.shared import (
-    BRICK,
-    NO_OFFSET,
-    contact_sets,
-    many_states,
-    same,
-    states,
-    trajectories,
-)
+from message_values.many import many_contact_modes_answers, many_impacts_answers, many_tumblings_answers
+from message_values.shared import BRICK, NO_OFFSET, contact_sets, many_states, same, states, trajectories
 from message_values.toss import (
     branches,
     event_regions,
@@ -56,23 +44,11 @@ from message_values.tumbling import carried, rotations, tumbling_answers
 from msg_adapters.batches import STATES
 from msg_adapters.bodies_contact_mode import MODE_OF_BODIES
 from msg_adapters.body_state import body_state_from_msg, body_state_to_msg
-from msg_adapters.contact_mode import (
-    GEOMETRY_MARGIN,
-    MARGIN,
-    MODE,
-    WRENCH_SET,
-)
+from msg_adapters.contact_mode import GEOMETRY_MARGIN, MARGIN, MODE, WRENCH_SET
 from msg_adapters.contacts import contacts_from_msg, contacts_to_msg
 from msg_adapters.fields import Frame, Kind, Row, Table
 from msg_adapters.impact import RESOLVED_IMPACT
-from msg_adapters.toss import (
-    BRANCH,
-    DISTRIBUTION,
-    EVENT,
-    EVENT_REGIONS,
-    PATH,
-    REGION,
-)
+from msg_adapters.toss import BRANCH, DISTRIBUTION, EVENT, EVENT_REGIONS, PATH, REGION
 from msg_adapters.tumbling import COVARIANCES, CURVES, FLIPS, POINSOT, TRAJECTORY
 
 CENTER = np.array([0.02, -0.01, 0.005])  # m, of mass, in the body's frame
@@ -171,7 +147,7 @@ def _pairs_of(service: Service) -> dict[str, Pair]:
             answers(),
             partial(service.answer_to_msg, **FRAME),
             partial(service.answer_from_msg, world=NOWHERE),
-        ),
+        )
     }
 
 

@@ -192,9 +192,7 @@ def worker_of(server: subprocess.Popen[str]) -> int:
 
 
 @pytest.fixture(scope="module")
-def overloaded(
-    tmp_path_factory: pytest.TempPathFactory,
-) -> Iterator[tuple[subprocess.Popen[str], Monitor]]:
+def overloaded(tmp_path_factory: pytest.TempPathFactory) -> Iterator[tuple[subprocess.Popen[str], Monitor]]:
     """A server with one worker, for which no question waits."""
     limits = {"workers": 1, "max_waiting": 0}
     arguments = ("--ros-args", "-p", "answer_deadline:=10.0")

@@ -67,18 +67,12 @@ def test_a_configured_link_is_the_body_that_the_library_reads(
 @pytest.mark.parametrize(
     ("values", "words"),
     [
-        (
-            {"urdf": urdf("box"), "mass": 1.0},
-            "body.part.mass must be left out, since ",
-        ),
+        ({"urdf": urdf("box"), "mass": 1.0}, "body.part.mass must be left out, since "),
         ({"urdf": urdf("box"), "link": "base"}, "body.part.urdf: link must be one of those with a mass"),
         ({"urdf": "missing.urdf"}, "body.part.urdf: source must be a file that can be read"),
         ({"urdf": 1.0}, "body.part.urdf and link must be texts, got 1.0"),
         ({"urdf": urdf("box", "cylinder")}, "the hull of several collision shapes must be one of boxes"),
-        (
-            {"link": "part", "mass": 1.0, "sphere": [0.1]},
-            "body.part.link must be given when ",
-        ),
+        ({"link": "part", "mass": 1.0, "sphere": [0.1]}, "body.part.link must be given when "),
     ],
 )
 @pytest.mark.filterwarnings("ignore::contact_dynamics.errors.ConcaveShapeWarning")

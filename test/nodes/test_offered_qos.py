@@ -78,11 +78,7 @@ def test_a_log_is_published_as_it_was(tmp_path: Path) -> None:
     unknown = [OfferedQos(reliability="unknown")]
     expected: dict[str, tuple[list[Any], ReliabilityPolicy, DurabilityPolicy]] = {
         "/best_effort": ([BEST_EFFORT], ReliabilityPolicy.BEST_EFFORT, DurabilityPolicy.VOLATILE),
-        "/several": (
-            [BEST_EFFORT, LATCHED],
-            ReliabilityPolicy.RELIABLE,
-            DurabilityPolicy.TRANSIENT_LOCAL,
-        ),
+        "/several": ([BEST_EFFORT, LATCHED], ReliabilityPolicy.RELIABLE, DurabilityPolicy.TRANSIENT_LOCAL),
         "/unknown": (unknown, ReliabilityPolicy.RELIABLE, DurabilityPolicy.VOLATILE),
         "/nothing": ([], ReliabilityPolicy.RELIABLE, DurabilityPolicy.VOLATILE),
     }

@@ -66,10 +66,7 @@ def test_nested_names_are_joined_and_the_nodes_own_values_count_more(tmp_path: P
         ("/**: 3\n", "** must have ros__parameters"),
         ("a: b\n", "a must have ros__parameters"),
         ("[]\n", "must have parameters of /**"),
-        (
-            "contact_dynamcis:\n  ros__parameters:\n    horizon: 1.0\n",
-            "got only those of /contact_dynamcis",
-        ),
+        ("contact_dynamcis:\n  ros__parameters:\n    horizon: 1.0\n", "got only those of /contact_dynamcis"),
         (
             "a/contact_dynamics:\n  ros__parameters:\n    horizon: 1.0\n",
             "must have parameters of /** or /contact_dynamics",
@@ -194,8 +191,7 @@ def test_two_bodies_of_one_frame_on_one_topic_are_refused() -> None:
     topics = {f"body.{body}.source_topics": ["/tf"] for body in ("a", "b")}
     parameters = read_server_parameters(ParameterSource({"bodies": ["a", "b"], **values, **topics}))
     with pytest.raises(
-        ConfigurationError,
-        match=r"body\.b\.frame must be another frame than that of body\.a.*, got 'cup'",
+        ConfigurationError, match=r"body\.b\.frame must be another frame than that of body\.a.*, got 'cup'"
     ):
         state_sources(parameters, static=TransformTree())
 

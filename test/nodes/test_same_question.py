@@ -211,14 +211,7 @@ REQUESTS: dict[str, tuple[Any, Fields]] = {
     ),
     "a toss": (
         PredictToss,
-        {
-            **BRICK,
-            "state_source": 1,
-            "state": UNCERTAIN,
-            "samples": 5,
-            "seed": 3,
-            "max_alternatives": 1,
-        },
+        {**BRICK, "state_source": 1, "state": UNCERTAIN, "samples": 5, "seed": 3, "max_alternatives": 1},
     ),
     "many impacts": (
         PredictImpactBatch,
@@ -234,11 +227,7 @@ REQUESTS: dict[str, tuple[Any, Fields]] = {
     "many tumblings": (PredictTumblingBatch, {**BRICK, "states": MANY, "times": [0.25, 0.5]}),
     "many contact modes": (
         PredictContactModeBatch,
-        {
-            **PUSHED,
-            "forces": [0.0, 0.0, 0.0, 0.3, 0.0, 0.0, 2.0, 0.0, 0.0],
-            "include_margins": True,
-        },
+        {**PUSHED, "forces": [0.0, 0.0, 0.0, 0.3, 0.0, 0.0, 2.0, 0.0, 0.0], "include_margins": True},
     ),
     "contact modes of bodies": (
         PredictBodiesContactMode,

@@ -24,13 +24,7 @@ with warnings.catch_warnings():
     from viewing.drawn import STAMP_NS, Drawn, read_drawn
 
 from contact_dynamics.questions import services
-from contact_dynamics_interfaces.msg import (
-    BodyState,
-    ContactSet,
-    Impact,
-    Poinsot,
-    Trajectory,
-)
+from contact_dynamics_interfaces.msg import BodyState, ContactSet, Impact, Poinsot, Trajectory
 from contact_dynamics_interfaces.srv import PredictImpact, PredictTumbling
 from msg_adapters.stamps import stamp_to_msg
 from running_server import DOMAIN_ID

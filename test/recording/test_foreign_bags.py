@@ -37,11 +37,7 @@ COUNT = 600
 
 
 def rosbags_bag(
-    folder: Path,
-    pose_cdr: PoseCdr,
-    *,
-    storage: StoragePlugin,
-    mode: CompressionMode = CompressionMode.NONE,
+    folder: Path, pose_cdr: PoseCdr, *, storage: StoragePlugin, mode: CompressionMode = CompressionMode.NONE
 ) -> None:
     """A bag of poses, one a second, as rosbags writes it."""
     store = get_typestore(Stores.ROS2_JAZZY)

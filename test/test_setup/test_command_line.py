@@ -135,10 +135,7 @@ def test_what_is_mistyped_gets_what_is_meant(
 
 @pytest.mark.parametrize(
     ("line", "offered"),
-    [
-        ("contact-dynamics rep", ["replay"]),
-        ("contact-dynamics replay table --ou", ["--output"]),
-    ],
+    [("contact-dynamics rep", ["replay"]), ("contact-dynamics replay table --ou", ["--output"])],
 )
 def test_a_shell_can_complete_verbs_and_options(tmp_path: Path, line: str, offered: list[str]) -> None:
     told = tmp_path / "told"

@@ -54,11 +54,7 @@ def test_an_argument_of_which_each_server_has_its_own_value_is_rejected(
 
 @pytest.mark.parametrize(
     ("before", "asked", "after"),
-    [
-        (None, None, "LOCALHOST"),
-        ("SUBNET", None, "SUBNET"),
-        ("LOCALHOST", "SUBNET", "SUBNET"),
-    ],
+    [(None, None, "LOCALHOST"), ("SUBNET", None, "SUBNET"), ("LOCALHOST", "SUBNET", "SUBNET")],
 )
 def test_the_server_is_found_on_this_machine_unless_something_else_is_asked(
     monkeypatch: pytest.MonkeyPatch, before: str | None, asked: str | None, after: str

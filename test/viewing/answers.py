@@ -14,13 +14,7 @@ from contact_dynamics.contact_modes import ModeVerdict, SpatialMode
 from contact_dynamics.impact import PathEvent, ResolvedImpact, RestitutionLaw, SeveralContactsLaw
 from contact_dynamics.motion.integrated import Method
 from contact_dynamics.plane.projection import PlaneOfMotion
-from contact_dynamics.questions import (
-    ContactModeAnswer,
-    ImpactAnswer,
-    NamedState,
-    Problem,
-    TumblingAnswer,
-)
+from contact_dynamics.questions import ContactModeAnswer, ImpactAnswer, NamedState, Problem, TumblingAnswer
 from contact_dynamics.rigid_body.body import BodyState
 from contact_dynamics.tumbling import Trajectory
 from contact_dynamics.validation import FloatArray

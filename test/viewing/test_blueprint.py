@@ -105,14 +105,7 @@ PAGES = {
     ),
     "an impact in space": (
         [ANSWERS, IMPACTS, IMPULSE_SPACE, IMPULSE_SPACE_IN_3D],
-        [
-            *OVERVIEW,
-            *TOLD,
-            "Impact",
-            SPEED,
-            "Newest answers",
-            *2 * ["Impulse space", "Impulse space in 3-D"],
-        ],
+        [*OVERVIEW, *TOLD, "Impact", SPEED, "Newest answers", *2 * ["Impulse space", "Impulse space in 3-D"]],
         ["Impact"],
     ),
     "energy": ([ENERGY], [*OVERVIEW, "Motion", *OF_ONE_BODY], ["Energy and momentum"]),

@@ -25,10 +25,7 @@ PATH = "/poinsot/bodies/brick"
 def answer_of(motion: FreeMotion) -> TumblingAnswer:
     """The motion for 0.1 s, with the curves of its rotation."""
     return tumbling_answer(
-        motion.state,
-        motion.at([0.0, 0.1]),
-        poinsot=poinsot(motion),
-        curves=rolling_curves(motion, 50),
+        motion.state, motion.at([0.0, 0.1]), poinsot=poinsot(motion), curves=rolling_curves(motion, 50)
     )
 
 
