@@ -200,10 +200,7 @@ def tumbling_questions(draw: st.DrawFn) -> TumblingQuestion:
 @st.composite
 def impact_questions(draw: st.DrawFn) -> ImpactQuestion:
     in_time = st.builds(
-        InTime,
-        strike_window=sizes,
-        max_strikes=st.sampled_from([1, 50, 2**32 - 1]),
-        hold_step=optional_sizes,
+        InTime, strike_window=sizes, max_strikes=st.sampled_from([1, 50, 2**32 - 1]), hold_step=optional_sizes
     )
     other = draw(st.sampled_from([None, None, None, "ball", "cube"]))
     return ImpactQuestion(

@@ -187,12 +187,7 @@ def test_a_contact_off_the_shape_of_either_body_has_a_warning_with_its_number() 
             "contacts must be at least one",
         ),
         (
-            {
-                "states": [
-                    STATES[0],
-                    BodyState(p_WB_W=[0, 0, 1e16], q_WB=[0, 0, 0, 1]),
-                ]
-            },
+            {"states": [STATES[0], BodyState(p_WB_W=[0, 0, 1e16], q_WB=[0, 0, 0, 1])]},
             InvalidFieldError,
             "body 1: p_WB_W must be at most",
         ),
@@ -233,10 +228,7 @@ TWICE = [BodyStateMsg(body_name="lower"), BodyStateMsg(body_name="lower")]
     [
         ({"states": TWICE}, "states[1].body_name must be a name that no other body has"),
         ({"states": [BodyStateMsg()]}, "states[0].body_name must be a name that no other body has"),
-        (
-            {"state_source": 0},
-            "states[0].pose.position.z must be left out unless state_source is STATE_",
-        ),
+        ({"state_source": 0}, "states[0].pose.position.z must be left out unless state_source is STATE_"),
         ({"inertias": [Inertia()]}, "inertias must be 2, one for each state, or none, got 1 elements"),
         ({"contact_bodies": [0] * 7}, "contact_bodies must be 8, one for each contact, got 7 indices"),
         ({"contact_bodies": [0] * 4 + [1, 1, 1, 2]}, "contact_bodies[7] must be an index of states, below 2"),

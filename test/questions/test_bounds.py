@@ -34,8 +34,7 @@ FAST_SPIN = (1e9, 1e8, 1e8)  # rad/s, as a broken driver sends
 
 
 BRICK = Body(
-    name="brick",
-    mass_properties=MassProperties(mass=0.4, I_B=np.diag([0.000353333, 0.000833333, 0.00102])),
+    name="brick", mass_properties=MassProperties(mass=0.4, I_B=np.diag([0.000353333, 0.000833333, 0.00102]))
 )
 
 

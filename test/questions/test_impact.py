@@ -63,10 +63,7 @@ def test_a_body_a_state_and_contacts_are_enough() -> None:
     np.testing.assert_allclose(found.impact.impulses_W, [expected], rtol=0.0, atol=ROUNDING)
     assert found.impact.outcome is ImpactOutcome.SLIDES
     np.testing.assert_allclose(
-        found.impact.state.v_WB_W,
-        [5.0 - FRICTION * normal / MASS, 0.0, RESTITUTION],
-        rtol=0.0,
-        atol=ROUNDING,
+        found.impact.state.v_WB_W, [5.0 - FRICTION * normal / MASS, 0.0, RESTITUTION], rtol=0.0, atol=ROUNDING
     )
     spin = FRICTION * normal * HALF / MOMENT
     np.testing.assert_allclose(found.impact.state.w_WB_W, [0.0, spin, 0.0], rtol=0.0, atol=1e-11)
@@ -109,9 +106,7 @@ def test_a_body_in_flight_lands_first() -> None:
 
 
 @pytest.mark.parametrize("times", [(40, 50), (30, 36, 50), (20, 30)], ids=["at", "between", "before"])
-def test_the_newest_state_of_a_second_body_is_that_at_the_time_of_the_first(
-    times: tuple[int, ...],
-) -> None:
+def test_the_newest_state_of_a_second_body_is_that_at_the_time_of_the_first(times: tuple[int, ...]) -> None:
     """It falls freely. A worker, which has only an excerpt of the states, uses the same."""
     lid, thrown = replace(CUBE, name="lid"), state(1.0 - SIDE, v=(0.0, 0.0, 1.0))
     store, motion = StateStore(history=1.0, timeout=0.5), free_motion(CUBE, thrown)

@@ -145,11 +145,7 @@ def test_linear_drag_slows_it_down() -> None:
     """Without gravity v(t) = v0 exp(-k t / m)."""
     k = 0.3
     question = TumblingQuestion(
-        body=CUBE,
-        state=TOSSED,
-        gravity_W=[0, 0, 0],
-        drag=Drag(linear=k),
-        sampling=AtTimes(times=[1.0]),
+        body=CUBE, state=TOSSED, gravity_W=[0, 0, 0], drag=Drag(linear=k), sampling=AtTimes(times=[1.0])
     )
     found = answer(question)
     expected = TOSSED.v_WB_W * math.exp(-k / MASS)

@@ -320,9 +320,7 @@ def test_a_batch_of_contact_modes_says_which_candidates_have_a_warning() -> None
         ([on, off, off], [f"2 of 3 candidates, of which candidate 1 is the first: {outside}"]),
     ):
         asked = ContactModeQuestion(
-            body="cube",
-            state=rest,
-            contacts=ContactSet(p_WC_W=points, normals_W=[0, 0, 1], frictions=0.3),
+            body="cube", state=rest, contacts=ContactSet(p_WC_W=points, normals_W=[0, 0, 1], frictions=0.3)
         )
         question = ManyContactModesQuestion(
             asked=asked, forces_W=np.zeros((3, 3)), torques_W=np.zeros((3, 3)), contact_counts=(1, 1, 1)

@@ -265,10 +265,7 @@ def test_questions_come_as_often_as_they_are_asked_for(tmp_path: Path) -> None:
         (["--config", "none.yaml"], "none.yaml"),
         (["--config", "empty.yaml"], "empty.yaml must have parameters of"),
         (["--config", "broken.yaml"], "broken.yaml: no YAML: "),
-        (
-            ["--config", "server.yaml", "--topics", "ball"],
-            "--topics must be BODY=ODOMETRY..., got 'ball'",
-        ),
+        (["--config", "server.yaml", "--topics", "ball"], "--topics must be BODY=ODOMETRY..., got 'ball'"),
         (
             ["--config", "server.yaml", "--topics", "cat=/tracker/cat"],
             "body.cat.odometry_topic must be about one of the names in bodies ['ball'], got body 'cat'",

@@ -187,10 +187,7 @@ def test_what_if_friction_had_been_another(
     [
         ("surface.flor.friction:=0.3", "surface.flor.friction"),
         ("surface.floor.friction:=-1", "surface.floor.friction"),
-        (
-            "surface.floor.friction:=much",
-            "surface.floor.friction must be a number..., got 'much'",
-        ),
+        ("surface.floor.friction:=much", "surface.floor.friction must be a number..., got 'much'"),
         ("surface.floor.friction=0.3", "--set must be NAME:=VALUE, got 'surface.floor.friction=0.3'"),
     ],
 )

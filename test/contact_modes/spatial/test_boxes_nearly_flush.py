@@ -13,12 +13,7 @@ import numpy as np
 import pytest
 
 from contact_dynamics import BodyState, ContactSet, MassProperties
-from contact_dynamics.contact_modes import (
-    ModeVerdict,
-    SpatialContactProblem,
-    SpatialMode,
-    contact_modes,
-)
+from contact_dynamics.contact_modes import ModeVerdict, SpatialContactProblem, SpatialMode, contact_modes
 from contact_dynamics.tolerances import FLUSH, FLUSH_ROUGHLY, STRICT
 from contact_modes.evidence import spatial_problem
 from oracles.boxes_nearly_flush import MASS, Flush, flush
