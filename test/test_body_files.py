@@ -149,14 +149,80 @@ def test_what_no_mass_inside_the_shape_has_is_a_warning() -> None:
         Body.from_urdf(urdf(collision('<box size="150 90 50"/>')))
 
 
-def test_the_hull_of_several_shapes_is_a_warning_and_balls_beside_boxes_are_an_error() -> None:
+def test_several_collision_shapes_are_the_parts_of_a_union() -> None:
     halves = [
         collision('<box size="0.075 0.09 0.05"/>', f'<origin xyz="{x} 0 0"/>') for x in (-0.0375, 0.0375)
     ]
-    with pytest.warns(ConcaveShapeWarning, match="link 'brick' has 2 collision shapes"):
-        assert lands(Body.from_urdf(urdf("".join(halves)))) == pytest.approx(lands(UNIFORM), rel=1e-12)
-    with pytest.raises(InvalidFieldError, match="balls or capsules beside other shapes"):
+    body = Body.from_urdf(urdf("".join(halves)))
+    assert lands(body) == pytest.approx(lands(UNIFORM), rel=1e-12)
+    assert [part.vertices[:, 0].min() for part in body.shape.parts] == [-0.075, 0.0]
+    notched = Body.from_urdf(urdf(BOX + collision('<cylinder radius="0.01" length="0.05"/>')))
+    assert [len(part.rims) for part in notched.shape.parts] == [0, 2]
+    with pytest.raises(InvalidFieldError, match=r"parts must be parts of one rounding, got .* 0\.01 m"):
         Body.from_urdf(urdf(BOX + collision('<sphere radius="0.01"/>')))
+
+
+def box_mesh(
+    size: tuple[float, ...], place: tuple[float, ...], first: int = 0
+) -> tuple[np.ndarray, np.ndarray]:
+    """The vertices and triangles of a box, the latter counted from a first vertex."""
+    trimesh = pytest.importorskip("trimesh")
+    mesh = trimesh.creation.box(extents=size)
+    return np.array(mesh.vertices) + place, np.array(mesh.faces) + first
+
+
+def test_the_connected_parts_of_a_mesh_are_convex_parts(tmp_path: Path) -> None:
+    """Two boxes side by side, in arrays, in a file, and in a link of a file."""
+    trimesh = pytest.importorskip("trimesh")
+    one, other = box_mesh((0.1, 0.1, 0.1), (0, 0, 0)), box_mesh((0.1, 0.1, 0.3), (0.3, 0, 0.1), 8)
+    vertices, triangles = (np.concatenate(both) for both in zip(one, other, strict=True))
+    file = tmp_path / "two.stl"
+    trimesh.Trimesh(vertices, triangles).export(file)
+    link = urdf(collision(f'<mesh filename="{file}"/>'))
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", ImplausibleBodyWarning)
+        bodies = [
+            Body.from_mesh(vertices, triangles, 0.4),
+            Body.from_mesh(file, mass=0.4),
+            Body.from_urdf(link),
+        ]
+    for body in bodies:
+        lowest = sorted((part.vertices.min(axis=0) + body.p_FB_F).tolist() for part in body.shape.parts)
+        np.testing.assert_allclose(lowest, [[-0.05] * 3, [0.25, -0.05, -0.05]], atol=1e-8)  # single precision
+    volumes, centers = np.array([0.001, 0.003]), np.array([[0, 0, 0], [0.3, 0, 0.1]])
+    np.testing.assert_allclose(bodies[0].p_FB_F, volumes @ centers / 0.004, atol=1e-15)
+
+
+def test_a_cavity_of_a_mesh_changes_its_mass_and_not_its_contacts() -> None:
+    outer, cavity = box_mesh(SIZE, (0, 0, 0)), box_mesh((0.1, 0.05, 0.02), (0, 0, 0), 8)
+    hollow = Body.from_mesh(
+        np.concatenate([outer[0], cavity[0]]), np.concatenate([outer[1], cavity[1][:, ::-1]]), density=1000
+    )
+    assert hollow.mass_properties.mass == pytest.approx(1000 * (np.prod(SIZE) - 0.1 * 0.05 * 0.02), rel=1e-12)
+    assert sorted(hollow.vertices_B.tolist()) == sorted(UNIFORM.vertices_B.tolist())
+
+
+def test_a_part_of_a_mesh_that_is_not_convex_is_a_warning() -> None:
+    """A box with a dent, beside a box; and more parts than a body may have, of which the hull is taken."""
+    dented, box = box_mesh((0.2, 0.2, 0.2), (0, 0, 0)), box_mesh((0.1, 0.1, 0.1), (1, 0, 0), 9)
+    top = [row for row in dented[1].tolist() if (dented[0][row][:, 2] > 0).all()]
+    rest = [row for row in dented[1].tolist() if row not in top]
+    ring = [1, 5, 7, 3] if 1 in np.ravel(top) else sorted({*np.ravel(top).tolist()})
+    fan = [[a, b, 8] for a, b in zip(ring, ring[1:] + ring[:1], strict=True)]
+    vertices = np.concatenate([dented[0], [[0, 0, 0.05]], box[0]])
+    corners = vertices[fan]
+    upward = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])[:, 2] > 0
+    fan = [row if up else row[::-1] for row, up in zip(fan, upward.tolist(), strict=True)]
+    triangles = np.concatenate([rest, fan, box[1]])
+    with pytest.warns(
+        ConcaveShapeWarning, match=r"body 'mesh 0': 1 of 9 corners .* convex parts \(shapes.union"
+    ):
+        body = Body.from_mesh(vertices, triangles, 1.0)
+    assert len(body.shape.parts) == 2
+    many = [box_mesh((0.1, 0.1, 0.1), (0.2 * i, 0, 0), 8 * i) for i in range(101)]
+    vertices, triangles = (np.concatenate(each) for each in zip(*many, strict=True))
+    with pytest.warns(ConcaveShapeWarning, match="mesh 'mesh' has 101 parts, more than 100"):
+        assert Body.from_mesh(vertices, triangles, 1.0).shape.parts == ()
 
 
 @pytest.mark.parametrize(

@@ -86,7 +86,7 @@ class Model:
     """The parameters of one body on some surfaces."""
 
     def __init__(self, body: Body, surfaces: Sequence[Surface]) -> None:
-        """Name the parameters, or raise `NotSupportedError` if the shape is empty, or has rims or several parts."""
+        """Name the parameters, or raise `NotSupportedError` if the shape is empty or has rims or parts."""
         shape = body.shape
         if shape.is_empty or shape.rims or shape.parts:
             found = "rims of a round shape" if shape.rims else "several parts" if shape.parts else "no shape"

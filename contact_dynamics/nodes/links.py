@@ -13,12 +13,13 @@ from contact_dynamics.errors import ContactDynamicsError
 from contact_dynamics.nodes.parameter_reader import ConfigurationError
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Mapping, Sequence
 
-    from contact_dynamics.shapes.files import Link
+    from contact_dynamics.shapes.files import Primitive
 
 URDF: Final = "urdf"
 LINK: Final = "link"
+PARTS: Final = "parts"
 
 
 def with_links_read(values: Mapping[str, Any]) -> dict[str, Any]:
@@ -56,21 +57,24 @@ def _numbers(name: str, source: Any, link: Any) -> dict[str, Any]:
         "mass": float(found.mass.mass),
         "inertia": [float(I_B[i]) for i in ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2))],
         "center_of_mass": found.mass.p_FB_F.tolist(),
-        **_shape(name, found),
+        **_shapes(found.primitives),
     }
 
 
-def _shape(name: str, link: Link) -> dict[str, Any]:
-    if len(link.primitives) == 1:
-        (one,) = link.primitives
-        return {
-            one.kind: one.numbers.ravel().tolist(),
-            "shape_position": one.position.tolist(),
-            "shape_orientation": one.orientation.tolist(),
-        }
-    if link.shape.is_empty:
-        return {}
-    if not link.shape.is_polyhedron:
-        message = f"{name}: the hull of several collision shapes must be one of boxes and meshes"
-        raise ConfigurationError(message)
-    return {"vertices": link.shape.vertices.ravel().tolist()}
+def _shapes(primitives: Sequence[Primitive]) -> dict[str, Any]:
+    """Return the parameters of collision shapes: a single one is the body's, and several are its parts."""
+    if len(primitives) == 1:
+        return _shape(primitives[0], "")
+    parts = {f"part_{i}": primitive for i, primitive in enumerate(primitives)}
+    found: dict[str, Any] = {PARTS: [*parts]} if parts else {}
+    for part, primitive in parts.items():
+        found |= _shape(primitive, f"{part}.")
+    return found
+
+
+def _shape(primitive: Primitive, before: str) -> dict[str, Any]:
+    return {
+        f"{before}{primitive.kind}": primitive.numbers.ravel().tolist(),
+        f"{before}shape_position": primitive.position.tolist(),
+        f"{before}shape_orientation": primitive.orientation.tolist(),
+    }

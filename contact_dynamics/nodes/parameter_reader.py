@@ -211,7 +211,7 @@ class ParameterSource:
         if listing and rest:
             own_name = rest.rpartition(".")[0] or rest
             allowed = [each for each in self.values.get(listing, []) if each]
-            if own_name not in allowed:
+            if not {own_name, own_name.rpartition(".")[0]} & {*allowed}:  # a part has one more name
                 return (
                     f"{name} must be about one of the names in {listing} {allowed}, got {kind} {own_name!r}"
                 )

@@ -15,9 +15,10 @@ from functools import cache
 from typing import TYPE_CHECKING, Final
 
 from contact_dynamics.constants import STANDARD_GRAVITY_W
+from contact_dynamics.nodes.links import PARTS
 from contact_dynamics.nodes.parameter_reader import ConfigurationError, ParameterSource
 from contact_dynamics.nodes.situations import FaultLimits
-from contact_dynamics.nodes.world_parameters import read_body, read_surface
+from contact_dynamics.nodes.world_parameters import SHAPE_PARAMETERS, read_body, read_surface
 from contact_dynamics.questions.carried_surface import CarriedSurface
 from contact_dynamics.questions.context import Defaults
 from contact_dynamics.questions.extent import check_vector
@@ -87,15 +88,15 @@ def described_server_parameters() -> tuple[DeclaredParameter, ...]:
     )
 
 
-def _known_names(body_names: Iterable[str], surface_names: Iterable[str]) -> set[str]:
-    """Return the names of all parameters of a server with these bodies and surfaces."""
+def _known_names(body_names: Iterable[str], surface_names: Iterable[str], parts: Iterable[str]) -> set[str]:
+    """Return the names of all parameters of a server with these bodies, surfaces and parts of bodies."""
     named = {"body.NAME.": [f"body.{name}." for name in body_names]}
     named["surface.NAME."] = [f"surface.{name}." for name in surface_names]
     known = {each.name for each in described_server_parameters()}
     for placeholder, prefixes in named.items():
         leaves = {name.removeprefix(placeholder) for name in known if name.startswith(placeholder)}
         known |= {prefix + leaf for prefix in prefixes for leaf in leaves}
-    return known
+    return known | {f"{part}.{leaf}" for part in parts for leaf in SHAPE_PARAMETERS}
 
 
 def read_server_parameters(source: ParameterSource) -> ServerParameters:
@@ -104,7 +105,11 @@ def read_server_parameters(source: ParameterSource) -> ServerParameters:
     Raise `ConfigurationError`, which names the parameter, if one is missing, of another type, or not allowed.
     """
     body_names, surface_names = _read_names(source)
-    source.refuse_unknown(_known_names(body_names, surface_names))
+    listed = {name: source.values.get(f"body.{name}.{PARTS}") for name in body_names}
+    parts = [
+        f"body.{name}.{part}" for name, found in listed.items() if isinstance(found, list) for part in found
+    ]
+    source.refuse_unknown(_known_names(body_names, surface_names, parts))
     parameters = _read_parameters(source, body_names, surface_names)
     source.refuse_unknown_overrides()
     return parameters

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Final, TypeAlias
 
 from contact_dynamics.errors import InvalidFieldError
-from contact_dynamics.nodes.links import LINK, URDF
+from contact_dynamics.nodes.links import LINK, PARTS, URDF
 from contact_dynamics.nodes.parameter_reader import ConfigurationError
 from contact_dynamics.questions.carried_surface import ACCELERATION_WINDOW, CarriedSurface
 from contact_dynamics.questions.extent import (
@@ -91,7 +91,8 @@ def read_body(source: ParameterSource, name: str) -> tuple[Body, BodySources]:
         f"{key}.center_of_mass", [0.0, 0.0, 0.0], "Centre of mass in the body's frame, m: x, y, z."
     )
     shape = _read_shape(source, key)
-    body = source.build(key, lambda: _body(name, mass, inertia, offset, shape))
+    parts = _read_parts(source, key)
+    body = source.build(key, lambda: _body(name, mass, inertia, offset, shape, parts=parts))
     return body, BodySources(
         body_name=name,
         frame=source.name(f"{key}.frame", name, "Frame of the body, whose pose is published."),
@@ -165,9 +166,17 @@ def _read_sources(source: ParameterSource, key: str) -> tuple[ConfiguredSource, 
     return tuple(sources)
 
 
-def _body(name: str, mass: float, inertia: list[float], offset: list[float], shape: ShapeParameters) -> Body:
+def _body(
+    name: str,
+    mass: float,
+    inertia: list[float],
+    offset: list[float],
+    shape: ShapeParameters,
+    *,
+    parts: Sequence[ConvexShape],
+) -> Body:
     center_of_mass = check_array("center_of_mass", offset, (3,))
-    shape_F = shape.shape_F()
+    shape_F = convex_shape.union([shape.shape_F(), *parts])
     if shape_F.is_empty:
         _check_unread(
             "unless there is a shape",
@@ -175,6 +184,8 @@ def _body(name: str, mass: float, inertia: list[float], offset: list[float], sha
             shape_position=(shape.position, [0.0, 0.0, 0.0]),
             shape_orientation=(shape.orientation, _NOT_TURNED),
         )
+    if parts and inertia == [0.0]:
+        raise InvalidFieldError("inertia", "[0.0] of a body with parts", "six numbers")
     if inertia == [0.0]:
         uniform = shape.uniform(check_positive("mass", mass))
         if center_of_mass.any():
@@ -193,9 +204,27 @@ def _body(name: str, mass: float, inertia: list[float], offset: list[float], sha
     check_mass(mass_properties)
     check_place("center_of_mass", center_of_mass)
     shape_B = shape_F.moved(-center_of_mass)
-    told = mass_properties if inertia != [0.0] and shape_B.is_polyhedron else None
-    warn_if_concave(f"body.{name}.vertices", shape_B.vertices, told, divided_faces=False)
+    told = mass_properties if inertia != [0.0] and shape_B.is_polyhedron and not parts else None
+    for part in shape_B.convex_parts:
+        warn_if_concave(f"body.{name}.vertices", part.vertices, told, divided_faces=bool(parts))
     return Body(name=name, mass_properties=mass_properties, p_FB_F=center_of_mass, shape=shape_B)
+
+
+def _read_parts(source: ParameterSource, key: str) -> list[ConvexShape]:
+    """Return the further convex parts of a body, in its frame."""
+    found = []
+    for name in source.names(
+        f"{key}.{PARTS}",
+        "Names of further convex parts of the body, each with parameters of its own, such as "
+        "body.<body>.<part>.box, for a body that is not convex.",
+    ):
+        part = f"{key}.{name}"
+        shape_F = source.build(part, _read_shape(source, part).shape_F)
+        if shape_F.is_empty:
+            message = f"{part} must have a shape ({', '.join(_PRIMITIVES)}), got none"
+            raise ConfigurationError(message)
+        found.append(shape_F)
+    return found
 
 
 def _read_shape(source: ParameterSource, key: str) -> ShapeParameters:
@@ -401,6 +430,9 @@ _PRIMITIVES: Final = {
 
 DESCRIPTIONS: Final = {name: primitive.description for name, primitive in _PRIMITIVES.items()}
 """The shapes, with descriptions of their numbers. The single number 0.0 means no shape."""
+
+SHAPE_PARAMETERS: Final = (*DESCRIPTIONS, "rounding", "shape_position", "shape_orientation")
+"""The parameters of a body, or of one of its parts, that describe its shape."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)

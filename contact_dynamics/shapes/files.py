@@ -3,8 +3,8 @@
 
 Both formats have the same elements. Where URDF has an attribute, SDF has an element with that text.
 
-Not covered: xacro (run it first), SDF's ``relative_to``, friction and restitution, which belong to surfaces
-here, and bodies of several parts that are not convex together, of which the hull is taken, with a warning.
+Not covered: xacro (run it first), SDF's ``relative_to``, and friction and restitution, which belong to
+surfaces here.
 """
 
 from __future__ import annotations
@@ -26,8 +26,8 @@ from contact_dynamics.errors import (
 )
 from contact_dynamics.rigid_body.inertia import MassDistribution
 from contact_dynamics.shapes import convex
-from contact_dynamics.shapes.concavity import warn_if_concave
-from contact_dynamics.shapes.convex import MAX_VERTICES, NO_SHAPE, ConvexShape
+from contact_dynamics.shapes.concavity import parts_of_mesh, warn_if_concave
+from contact_dynamics.shapes.convex import MAX_VERTICES, ConvexShape
 from contact_dynamics.tolerances import DENSEST, THINNEST
 from contact_dynamics.validation import check_unit
 
@@ -77,8 +77,12 @@ def read_link(source: str | Path, link: str | None) -> Link:
     element = _link(root, link)
     name = element.get("name", "")
     mass = _mass(element, f"link {name!r}")
-    primitives = [_primitive(collision, folder) for collision in element.findall("collision")]
-    shape = _shape([each.shape() for each in primitives], name)
+    primitives = [
+        primitive
+        for collision in element.findall("collision")
+        for primitive in _primitives(collision, folder)
+    ]
+    shape = convex.union([each.shape() for each in primitives])
     warn_if_implausible(f"link {name!r}", mass, shape)
     return Link(name, mass, shape, primitives)
 
@@ -148,24 +152,8 @@ def _mass(link: Element, what: str) -> MassDistribution:
     return of_mass.placed(p_GF_G=p, q_GF=q)
 
 
-def _shape(shapes: list[ConvexShape], name: str) -> ConvexShape:
-    """Return the hull of the collision shapes of a link, in its frame."""
-    if len(shapes) <= 1:
-        return shapes[0] if shapes else NO_SHAPE
-    if len({shape.rounding for shape in shapes}) > 1:
-        raise InvalidFieldError(
-            "collision", "balls or capsules beside other shapes", "shapes whose hull has one rounding"
-        )
-    message = f"link {name!r} has {len(shapes)} collision shapes. Their convex hull is taken"
-    warnings.warn(message, ConcaveShapeWarning, stacklevel=frames_to_caller())
-    return ConvexShape(
-        vertices=np.concatenate([shape.vertices for shape in shapes]),
-        rims=tuple(rim for shape in shapes for rim in shape.rims),
-        rounding=shapes[0].rounding,
-    )
-
-
-def _primitive(collision: Element, folder: Path) -> Primitive:
+def _primitives(collision: Element, folder: Path) -> list[Primitive]:
+    """Return a collision shape, or the connected parts of a mesh."""
     geometry = collision.find("geometry")
     solid = next(iter(geometry), None) if geometry is not None else None
     if solid is None:
@@ -181,10 +169,12 @@ def _primitive(collision: Element, folder: Path) -> Primitive:
             raise InvalidFieldError("mesh", "<submesh>", "a file of its own for each part")
         file = _file(_text(solid, "filename") or _text(solid, "uri") or "", folder)
         scale = _parsed(_text(solid, "scale") or "1 1 1", "scale", 3)
-        kind, numbers = "vertices", _corners(f"mesh {file.name}", read_mesh(file, scale)[0])
+        parts = parts_of_mesh(f"mesh {file.name}", *read_mesh(file, scale))
+        corners = [_corners(f"mesh {file.name}", vertices) for vertices, _ in parts]
+        return [Primitive("vertices", each, *_pose(collision)) for each in corners]
     else:
         raise InvalidFieldError("geometry", f"<{kind}>", "a box, cylinder, sphere, capsule or mesh")
-    return Primitive(kind, numbers, *_pose(collision))
+    return [Primitive(kind, numbers, *_pose(collision))]
 
 
 def _corners(what: str, vertices: FloatArray) -> FloatArray:

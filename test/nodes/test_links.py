@@ -39,14 +39,24 @@ def urdf(*shapes: str) -> str:
     )
 
 
+HAMMER = {
+    "mass": 0.6,
+    "inertia": [0.004, 0.004, 0.001, 0.0, 0.0, 0.0],
+    "head.box": [0.1, 0.03, 0.03],
+    "head.shape_position": [0.0, 0.0, 0.165],
+    "handle.box": [0.02, 0.02, 0.3],
+}
+
+
 def written(folder: Path, **values: Any) -> Path:
     parameters = {"bodies": ["part"], **FLOOR} | {f"body.part.{key}": value for key, value in values.items()}
     return parameters_file(folder, parameters)
 
 
-@pytest.mark.parametrize("shapes", [(), ("box",), ("cylinder",), ("sphere",), ("box", "box")], ids="+".join)
+@pytest.mark.parametrize(
+    "shapes", [(), ("box",), ("cylinder",), ("sphere",), ("box", "cylinder")], ids="+".join
+)
 @pytest.mark.parametrize("given", ["file", "text"])
-@pytest.mark.filterwarnings("ignore::contact_dynamics.errors.ConcaveShapeWarning")
 def test_a_configured_link_is_the_body_that_the_library_reads(
     shapes: tuple[str, ...], given: str, tmp_path: Path
 ) -> None:
@@ -58,10 +68,12 @@ def test_a_configured_link_is_the_body_that_the_library_reads(
     assert found.mass_properties.mass == expected.mass_properties.mass
     np.testing.assert_array_equal(found.mass_properties.I_B, expected.mass_properties.I_B)
     np.testing.assert_array_equal(found.p_FB_F, expected.p_FB_F)
-    # The quaternion of the shape is made unit once more.
-    np.testing.assert_allclose(found.shape.vertices, expected.shape.vertices, rtol=0, atol=1e-15)
-    assert len(found.shape.rims) == len(expected.shape.rims)
-    assert found.shape.rounding == expected.shape.rounding
+    assert len(found.shape.convex_parts) == max(len(shapes), 1)
+    for part, other in zip(found.shape.convex_parts, expected.shape.convex_parts, strict=True):
+        # The quaternion of the shape is made unit once more.
+        np.testing.assert_allclose(part.vertices, other.vertices, rtol=0, atol=1e-15)
+        assert len(part.rims) == len(other.rims)
+        assert part.rounding == other.rounding
 
 
 @pytest.mark.parametrize(
@@ -71,19 +83,37 @@ def test_a_configured_link_is_the_body_that_the_library_reads(
         ({"urdf": urdf("box"), "link": "base"}, "body.part.urdf: link must be one of those with a mass"),
         ({"urdf": "missing.urdf"}, "body.part.urdf: source must be a file that can be read"),
         ({"urdf": 1.0}, "body.part.urdf and link must be texts, got 1.0"),
-        ({"urdf": urdf("box", "cylinder")}, "the hull of several collision shapes must be one of boxes"),
-        ({"link": "part", "mass": 1.0, "sphere": [0.1]}, "body.part.link must be given when "),
+        ({"urdf": urdf("box", "sphere")}, "body.part.urdf: parts must be parts of one rounding"),
+        ({**HAMMER, "parts": ["head", "handle"], "inertia": [0.0]}, "body.part.inertia must be six numbers"),
+        ({**HAMMER, "parts": ["head"]}, "body.part.handle.box: there is no such parameter"),
+        ({**HAMMER, "parts": ["head", "handle", "grip"]}, "body.part.grip must have a shape"),
+        ({**HAMMER, "parts": ["head", "handle"], "head.mass": 1.0}, "body.part.head.mass: there is no such"),
+        (
+            {**HAMMER, "parts": ["head", "handle"], "head.rounding": 0.01},
+            "body.part.parts must be parts of one",
+        ),
+        ({"mass": 1.0, "box": [1.0, 1.0, 1.0], "parts": 5}, "body.part.parts must be a list"),
+        (
+            {"link": "part", "mass": 1.0, "sphere": [0.1]},
+            "body.part.link must be given when ",
+        ),
     ],
 )
-@pytest.mark.filterwarnings("ignore::contact_dynamics.errors.ConcaveShapeWarning")
 def test_what_is_wrong_with_a_link_is_named(values: dict[str, Any], words: str, tmp_path: Path) -> None:
     with pytest.raises(ConfigurationError, match=words):
         read_server_parameters(ParameterFile(written(tmp_path, **values)))
 
 
+def test_a_configured_body_of_parts_is_their_union(tmp_path: Path) -> None:
+    path = written(tmp_path, **HAMMER, parts=["head", "handle"], center_of_mass=[0.0, 0.0, 0.1])
+    (found,) = read_server_parameters(ParameterFile(path)).world.bodies
+    heights = [(part.vertices[:, 2].min(), part.vertices[:, 2].max()) for part in found.shape.parts]
+    np.testing.assert_allclose(heights, [[0.05, 0.08], [-0.25, 0.05]], atol=1e-16)
+
+
 def test_the_log_of_a_link_does_without_its_file(tmp_path: Path) -> None:
     file = tmp_path / "arm.urdf"
-    file.write_text(urdf("box"), encoding="utf-8")
+    file.write_text(urdf("box", "cylinder"), encoding="utf-8")
     path = written(tmp_path, urdf=str(file))
     settings = ("--ros-args", "-p", f"log_directory:={tmp_path}")
     with process("server", "--params-file", str(path), *settings, ready="ready") as server:
@@ -97,7 +127,7 @@ def test_the_log_of_a_link_does_without_its_file(tmp_path: Path) -> None:
             assert client.ask(request).status == 0
             getter = client.node.create_client(GetParameters, "/contact_dynamics/get_parameters")
             assert getter.wait_for_service(PATIENCE_S)
-            names = ["body.part.mass", "body.part.urdf", "body.part.box"]
+            names = ["body.part.mass", "body.part.urdf", "body.part.part_0.box"]
             future = getter.call_async(GetParameters.Request(names=names))
             client.spin_until(future.done)
             mass, text, sides = future.result().values
