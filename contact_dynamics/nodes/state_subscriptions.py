@@ -236,20 +236,13 @@ class BodyWatch:
     rejected.
     """
 
-    def __init__(
-        self,
-        sources: BodySources,
-        topics: Mapping[str, StateTopic],
-        *,
-        clock: Callable[[], float] = time.monotonic,
-    ) -> None:
-        """Begin to check. The ``topics`` have their full names as keys; ``clock`` returns s."""
+    def __init__(self, sources: BodySources, topics: Mapping[str, StateTopic]) -> None:
+        """Begin to check. The ``topics`` have their full names as keys."""
         self._name = sources.body_name
         self._sources = [[topics[each.full_name] for each in source.topics] for source in sources.sources]
         self._topics = [topic for source in self._sources for topic in source]
-        self._clock = clock
         self._came = self._rejected = self._old = 0  # numbers of states, at the last check
-        self._came_at = self._kept_at = clock()  # s, time of the last check with new ones
+        self._came_at = self._kept_at = time.monotonic()  # s, time of the last check with new ones
         self._rejected_at = -RECENT_S
         self._is_old = False
 
@@ -259,7 +252,7 @@ class BodyWatch:
         The body counts as silent after ``silent_after``, s, without a state. ``awake_for`` is the time, s,
         for which this process has run without being stopped.
         """
-        now = self._clock()
+        now = time.monotonic()
         came, rejected = arrivals.came - self._came, arrivals.rejected - self._rejected
         old, kept = arrivals.old - self._old, came - rejected
         self._came, self._rejected, self._old = arrivals.came, arrivals.rejected, arrivals.old

@@ -279,7 +279,7 @@ def up_of(gravity_W: FloatArray) -> FloatArray:
 
 
 def orbit(position: ArrayLike, target: ArrayLike, up: ArrayLike) -> rrb.EyeControls3D:
-    """Return an eye at a place that looks at another one, with this direction upwards, world axes."""
+    """Return an eye at a place that looks at a target, with an upward direction, in world axes."""
     return rrb.EyeControls3D(kind=rrb.Eye3DKind.Orbital, position=position, look_target=target, eye_up=up)
 
 
@@ -294,8 +294,8 @@ def _window() -> rrb.VisibleTimeRanges:
 
 
 FAR: Final = 20.0
-"""Relative to the extent of what is looked at, or to `LOWEST_DISTANCE` if that is more. A body that is
-farther from it is not looked at, because nothing else could be made out any more."""
+"""Largest distance of a framed body, relative to the extent of the others, or to `LOWEST_DISTANCE` if that is
+more. Beyond it, the others would be too small to see."""
 
 
 def near_most(points_W: FloatArray) -> FloatArray:
@@ -309,16 +309,16 @@ def near_most(points_W: FloatArray) -> FloatArray:
 class Framing:
     """Turns the eye to the first predicted path and the bodies that are not far from it.
 
-    It turns again only when a neighbour appears out of sight.
+    It turns again only when a body nearby appears out of sight.
     """
 
     def __init__(self, up_W: FloatArray) -> None:
         """Begin without a target. ``up_W`` is (3,), unit, world axes."""
         self._up_W = up_W
-        self._first_W: dict[str, FloatArray] = {}  # where each body was first seen, (3,), m
+        self._first_W: dict[str, FloatArray] = {}  # first position of each body, (3,), m
         self._path_W: FloatArray | None = None
         self._margin = 0.0
-        self._low_W, self._high_W = np.zeros(3), np.zeros(3)  # what is in sight
+        self._low_W, self._high_W = np.zeros(3), np.zeros(3)  # corners of the box around the points in sight
 
     @property
     def center_W(self) -> FloatArray:
@@ -341,7 +341,7 @@ class Framing:
         return eye_on(path_W, about_W=in_sight_W, up_W=self._up_W, margin=margin)
 
     def add_body(self, name: str, p_WB_W: FloatArray) -> Eye | None:
-        """Note where a new body is first seen, (3,), m.
+        """Store the first position of a new body, (3,), m.
 
         Return the eye that sees it too, if it is out of sight and not far.
         """

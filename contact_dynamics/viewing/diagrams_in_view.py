@@ -157,6 +157,6 @@ class DiagramsInView:
 
 
 def _replaced(diagram: Diagram, part: str, marks: list[Mark]) -> Diagram:
-    """Return a diagram with the marks whose names have a prefix replaced."""
+    """Return a diagram with other marks in place of those whose names have a prefix."""
     kept = [mark for mark in diagram.marks if not mark.name.startswith(part)]
     return replace(diagram, marks=[*kept, *marks])

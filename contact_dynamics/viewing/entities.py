@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The names under which things are drawn, and the timeline."""
+"""The names of drawn entities, and the timelines."""
 
 from __future__ import annotations
 
@@ -11,11 +11,11 @@ TIMELINE: Final = "stamp"  # name of the timeline. It is in ns since the epoch o
 SINCE_START: Final = "time since start"  # name of the timeline on which the first stamp is zero
 
 ORDER: Final = "order of events"
-"""Name of the timeline that counts what was drawn, in the order in which it came."""
+"""Name of the timeline with the number of each drawing, in their order."""
 
 SCENE: Final = "world"
 SURFACES: Final = "world/surfaces"
-BODIES: Final = "world/bodies"  # what is below a body moves with it
+BODIES: Final = "world/bodies"  # everything below a body moves with it
 TRAILS: Final = "world/trails"
 PREDICTED: Final = "world/predicted"
 IMPACTS: Final = "world/impact"
@@ -46,5 +46,5 @@ LEGEND: Final = "legend"
 
 
 def entity(parent: str, *names: str) -> str:
-    """Return the path of a thing below ``parent``. Names may have any characters, or none."""
+    """Return the path of an entity below ``parent``. Names may have any characters, or none."""
     return f"{parent}{rr.new_entity_path([name or 'unnamed' for name in names])}"

@@ -53,7 +53,7 @@ LABELS_S: Final = 0.5  # s. The labels of an impact, which cover the body, are r
 
 
 class ImpactsInView:
-    """The bodies with an impact in the scene, and until when it has labels."""
+    """The bodies with an impact in the scene, and the times until which these have labels."""
 
     def __init__(self, recording: rr.RecordingStream) -> None:
         """Begin without any."""
@@ -136,24 +136,24 @@ def _clear_each(recording: rr.RecordingStream, paths: Iterable[str], stamp_ns: i
 
 
 MAX_KEPT: Final = 500
-"""States of a body, 2 s at 250 Hz. An answer that comes later than that is not drawn beside the earliest."""
+"""Number of stored states of a body, 2 s at 250 Hz. Later answers are not drawn beside earlier states."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Prediction:
     """The predicted motion of a body."""
 
-    begin_ns: int  # when it begins, ns
-    trajectory: Trajectory  # the motion
+    begin_ns: int  # time of its beginning, ns
+    trajectory: Trajectory
     curves: dict[str, FloatArray]  # its curves by quantity, over the trajectory
-    number: int  # its number among those of its body, from 0 on
+    number: int  # its number among those of its body, from 0
 
 
 class PredictionsInView:
-    """The newest predictions, and the measured states beside them."""
+    """The latest predictions, and the measured states beside them."""
 
     def __init__(self, recording: rr.RecordingStream, bodies: BodiesInWorld, *, up_W: FloatArray) -> None:
-        """Begin without any, for bodies of a world in which this direction is up."""
+        """Begin without any, for bodies of a world in which ``up_W`` is upwards."""
         self._recording = recording
         self._bodies = bodies
         self._up_W = up_W
@@ -197,8 +197,7 @@ class PredictionsInView:
     ) -> tuple[bool, bool]:
         """Register a prediction, from which curves are drawn until the next one.
 
-        Returns:
-            Whether there are curves of energy, and whether the prediction is drawn beside any state.
+        Return whether there are curves of energy, and whether the prediction is drawn beside any state.
         """
         earlier = self._predictions.get(body_name)
         body = self._bodies.mass_properties(body_name)
@@ -223,7 +222,7 @@ class PredictionsInView:
         return [state for state in self._kept.get(body_name, ()) if state.stamp_ns > stamp_ns]
 
     def _compare(self, body_name: str, states: Sequence[BodyState]) -> bool:
-        """Draw the newest prediction of a body beside the states that it covers; return if there are any."""
+        """Draw the latest prediction of a body beside the states that it covers; return if there are any."""
         prediction = self._predictions.get(body_name)
         if prediction is None or not states:
             return False
@@ -245,8 +244,8 @@ class PredictionsInView:
 
 
 SAME_MOMENTUM: Final = 0.2
-"""Relative. If the angular momentum is off by more, the flight is over. In the demo's toss the noise of
-motion capture makes up to 0.08 of it, and impacts make more than 1."""
+"""Largest relative difference of the angular momentum within a flight. In the demo's toss, the noise of
+motion capture causes up to 0.08, and impacts more than 1."""
 
 _ABOVE: Final = (0.0, 0.0, 0.75)  # places of texts; the largest semi-axis has length 1
 

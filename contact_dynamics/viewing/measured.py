@@ -55,18 +55,18 @@ PREDICTED: Final = "after impact, predicted"  # kinds of curves of the speed
 MEASURED: Final = "after impact, measured"
 
 OF_ONE_BODY: Final = (ENERGY, MOMENTUM, ANGULAR_MOMENTUM, ANGULAR_VELOCITY)
-"""The entities of the curves that one body has at a time: it must have mass properties."""
+"""The entities of the curves of a single body, which must have mass properties."""
 
 _MAX_ACCELERATION: Final = 20.0
-"""m/s^2. A body that was struck or lost from view for a while is not taken for one that was put elsewhere."""
+"""m/s^2. It allows for impacts and gaps, so that these do not count as a displacement by hand."""
 
 _SLACK: Final = 0.05  # m, the same for a body with inaccurate measured velocities
 
 _GAP_S: Final = 1e-3  # s after a curve, where a gap separates it from the next
 
 SET_BACK_S: Final = 0.5
-"""s. Where the stamps of a body fall by more than this, its clock was set back, as by a simulation that
-begins anew. States that come late are late by less."""
+"""s. If the stamps of a body decrease by more, its clock was set back, as by a restarted simulation. Late
+states are late by less."""
 
 
 def curves_of(
@@ -144,9 +144,9 @@ def draw_states(
 
 
 def _put_elsewhere(way: Trajectory) -> NDArray[np.bool_]:
-    """Return which states after the first are out of reach of the previous one at the measured velocities."""
+    """Return which states after the first cannot be reached from the previous one at measured velocities."""
     seconds, speeds = np.diff(way.seconds), np.linalg.norm(way.v_WB_W, axis=1)
-    onwards = np.maximum(seconds, 0.0)  # after a clock was set back, nothing is within reach
+    onwards = np.maximum(seconds, 0.0)  # after a clock was set back, no state can be reached
     reach = (speeds[:-1] + speeds[1:]) * onwards + _MAX_ACCELERATION * onwards**2 + _SLACK
     return np.asarray(np.linalg.norm(np.diff(way.p_WB_W, axis=0), axis=1) > reach)
 

@@ -166,10 +166,9 @@ class Picture:
         self.tell("contact modes", answer.in_short().partition(": ")[2], stamp_ns=now_ns)
 
     def draw_tumbling(self, answer: TumblingAnswer, stamp_ns: int) -> tuple[list[str], list[str]]:
-        """Draw a predicted motion with its uncertainty, and Poinsot's picture if the answer has curves.
+        """Draw a predicted motion with its uncertainty, and the Poinsot construction if there are curves.
 
-        Returns:
-            What is in view, and remarks for the words, as from all methods that draw an answer.
+        Return the drawn views, and remarks for the words, as all methods that draw an answer do.
         """
         name, rotation = answer.body_name, answer.poinsot
         shape = self._bodies.shape(name)
@@ -270,7 +269,7 @@ class Picture:
         draw_marks(self.recording, marks, path)
 
     def tell(self, kind: str, text: str, *, stamp_ns: int, is_error: bool = False) -> None:
-        """Write an answer in words, both into the list of all answers and as the newest of its kind."""
+        """Write an answer as text, into the list of all answers and as the latest of its kind."""
         set_time(self.recording, stamp_ns)
         self._told_ns = stamp_ns
         self._bring_up(ANSWERS)

@@ -109,7 +109,7 @@ class BodiesInWorld:
         self.change(world)
 
     def change(self, world: World) -> None:
-        """Use those of another world."""
+        """Use the bodies of another world."""
         self._world = world
         self._shapes: dict[str, Shape] = {body.name: drawn_shape(body.shape) for body in world.bodies}
 
@@ -146,8 +146,8 @@ class BodiesInWorld:
 
 
 GROUND: Final = 5.0
-"""Side of the largest square that a surface is drawn as, relative to the extent of what is looked at. A wall
-that is much larger than a body hides it."""
+"""Side of the largest square for a surface, relative to the extent of the region in view. A much larger wall
+would hide the bodies."""
 
 
 class WorldInView:

@@ -85,10 +85,8 @@ class Sinks:
     viewer: ViewerMode = ViewerMode.NONE
     port: int = DEFAULT_PORT  # port of the viewer that is started, or that is served
     url: str = ""  # URL of the viewer to connect to, such as rerun+http://127.0.0.1:9876/proxy
-    # memory of the started viewer, or of the server, in rerun's format: `2GB`, `50%`.
-    memory: str = "1GiB"
-    # port of the web viewer beside the server. `NO_WEB_PORT` means none.
-    web_port: int = NO_WEB_PORT
+    memory: str = "1GiB"  # of the started viewer or of the server, in rerun's format: `2GB`, `50%`
+    web_port: int = NO_WEB_PORT  # port of the web viewer beside the server, if any
 
     def __post_init__(self) -> None:
         """Check values that rerun would reject too late."""
@@ -265,7 +263,7 @@ class WebViewer:
 
 
 MAX_BEHIND: Final = 30
-"""Looks at a viewer, of which each finds that it has not taken all that was drawn. Then it hangs."""
+"""Number of successive checks without all drawings accepted, after which a viewer counts as hanging."""
 
 _VIEWER_PATIENCE_S: Final = 0.01  # a live viewer accepts data within a millisecond
 
@@ -427,7 +425,7 @@ class RrdFiles:
 
 
 def _write_zeros(file: FileIO) -> None:
-    """Write as many zeros as there must be room for, or raise an `OSError`."""
+    """Write zeros to check for free space, or raise `OSError`."""
     left = _ROOM
     while left > 0:  # a nearly full disk accepts only a part
         left -= file.write(bytes(left))
