@@ -382,8 +382,8 @@ class Surface(Record):
         a_WS_W: (3,), m/s^2, acceleration of the surface's material point at ``p_WS_W``, world axes.
         alpha_WS_W: (3,), rad/s^2, angular acceleration of the surface, world axes.
         static_friction: Coefficient of static friction, >= ``friction``, of bodies that stick, or None if it
-            is the same. Contact modes, statics and loads use it; impacts use ``friction``. Tosses require
-            None.
+            is the same. Impacts use ``friction``. In tosses, ``lasting_factor`` applies to it, too, and a
+            body that has stopped stays at rest if it can.
         moves: Whether any of these four is not zero.
 
     Raises:

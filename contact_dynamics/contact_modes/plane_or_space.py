@@ -66,7 +66,8 @@ def contact_modes(
     """Return the verdict on a contact problem and all consistent modes.
 
     A mode has one letter per contact: s separates, f is fixed (sticks), l and r slide left and right
-    (planar), c slides (spatial). Each mode contains its accelerations and contact forces.
+    (planar), c slides (spatial). Each mode contains its accelerations and contact forces. A contact with the
+    letter f has static friction, and others, also those that begin to slide, have kinetic friction.
 
     Args:
         problem: The contact problem, such as SpatialContactProblem.of(body, state, world, force_W=push). It
@@ -300,7 +301,8 @@ def statics(
 ) -> BodyStatics:
     """Return whether the body stays at rest, with the size of the disturbance that it withstands.
 
-    On surfaces that move, rest is relative to them, under what inertia adds to the wrench.
+    On surfaces that move, rest is relative to them, under what inertia adds to the wrench. Static friction
+    holds the body; the equilibrium is CERTAIN if kinetic friction does not allow it to begin to slide.
 
     Args:
         problem: The contact problem. Its velocities have no effect: the body is treated as at rest.

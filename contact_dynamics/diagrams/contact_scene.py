@@ -104,7 +104,11 @@ def _at_contacts(contacts: ContactSet, modes: Sequence[AnyMode], *, size: float)
         Points("points", _UNDECIDED, contacts.p_WC_W, paints=paints, radius=_POINT_SIZE * size),
         _labels(letters, contacts, size=size),
         friction_cones(
-            "cones", contacts.p_WC_W, contacts.normals_W, contacts.frictions, height=_CONE_HEIGHT * size
+            "cones",
+            contacts.p_WC_W,
+            contacts.normals_W,
+            contacts.holding_frictions,
+            height=_CONE_HEIGHT * size,
         ),
     ]
 
@@ -253,7 +257,8 @@ def contact_forces(contacts: ContactSet, mode: ResponseMode, *, title: str = "")
     friction = np.linalg.norm(mode.contact_forces_W - normal[:, None] * contacts.normals_W, axis=1)
     top = _MARGIN * float(max(normal.max(initial=0.0), friction.max(initial=0.0))) or 1.0
     marks: list[Mark] = []
-    for i, coefficient in enumerate(np.unique(contacts.frictions).tolist()):
+    coefficients = np.unique([contacts.frictions, contacts.holding_frictions])
+    for i, coefficient in enumerate(coefficients.tolist()):
         reach = min(top, coefficient * top)
         marks.append(
             Lines(

@@ -146,7 +146,7 @@ def split_generators(
         (number, edge)
         for number, (contact, letter) in enumerate(zip(contacts, one.mode, strict=True), start=1)
         if letter != "s"
-        for edge in friction_cone(contact)
+        for edge in friction_cone(contact, sticks=letter == "f")
     ]
     forces: list[tuple[int, PlanarWrench]] = []
     motions: list[PlanarWrench] = []

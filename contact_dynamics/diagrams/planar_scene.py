@@ -117,7 +117,7 @@ def planar_scene_of(
 
 def cone_edges(contact: PlanarContact, *, length: float) -> FloatArray:
     """Return a friction cone as a strip, (3, 2), m, with edges of that length, m."""
-    angle = math.atan(contact.friction)
+    angle = math.atan(contact.holding_friction)
     normal, tangent = np.array(contact.normal), np.array(contact.tangent)
     upward, sideways = length * math.cos(angle) * normal, length * math.sin(angle) * tangent
     strip: FloatArray = np.array(contact.r) + np.array([upward + sideways, np.zeros(2), upward - sideways])
@@ -333,8 +333,13 @@ def _seen_contacts(answer: ContactModeAnswer, plane: PlaneOfMotion) -> tuple[Pla
     arms = (contacts.p_WC_W - answer.state.p_WB_W) @ plane.axes_W.T
     normals = contacts.normals_W @ plane.axes_W.T
     return tuple(
-        PlanarContact(r=_pair(arm), normal=_pair(normal / np.linalg.norm(normal)), friction=friction)
-        for arm, normal, friction in zip(arms, normals, contacts.frictions.tolist(), strict=True)
+        PlanarContact(
+            r=_pair(arm),
+            normal=_pair(normal / np.linalg.norm(normal)),
+            friction=one.friction,
+            static_friction=one.static_friction,
+        )
+        for arm, normal, one in zip(arms, normals, contacts, strict=True)
     )
 
 

@@ -286,12 +286,14 @@ class OrientedPoint(NamedTuple):
     turn: Turn
 
 
-def friction_cone(contact: PlanarContact) -> tuple[PlanarWrench, PlanarWrench]:
+def friction_cone(contact: PlanarContact, *, sticks: bool = False) -> tuple[PlanarWrench, PlanarWrench]:
     """Return the wrenches of unit normal force along the two edges of a contact's cone.
 
-    The first pushes right, as on a contact that slides left, and the second pushes left.
+    The first pushes right, as on a contact that slides left, and the second pushes left. The cone is that of
+    static friction if the contact ``sticks``.
     """
-    return _edge(contact, contact.friction), _edge(contact, -contact.friction)
+    friction = contact.holding_friction if sticks else contact.friction
+    return _edge(contact, friction), _edge(contact, -friction)
 
 
 def _edge(contact: PlanarContact, slope: float) -> PlanarWrench:

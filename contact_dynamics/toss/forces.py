@@ -272,7 +272,7 @@ class HeldContacts:
             least = min(least, pressing)
             if not one.slides:
                 across = math.sqrt(max(vec.dot(force, force) - pressing * pressing, 0.0))
-                least = min(least, flat.friction * pressing - across)
+                least = min(least, flat.holding() * pressing - across)
         return least + force_rounding(self.solid)
 
     def friction_left(self) -> float:
@@ -386,7 +386,7 @@ class HeldContacts:
                 moved = vec.opposite(moved)
             rise, aside = vec.dot(moved, flat.normal), vec.norm(vec.without(moved, flat.normal))
             least = -force_rounding(self.solid) * vec.norm(moved)
-            if rise > flat.friction * aside and vec.dot(moved, self.force(k)) < least:
+            if rise > flat.holding() * aside and vec.dot(moved, self.force(k)) < least:
                 return True
         return False
 
@@ -398,7 +398,7 @@ class HeldContacts:
             n, mu = flat.normal, flat.friction
             d = one.towards if one.begins else pose.sliding(arm, n, one.towards)
             axes.append((n[0] - mu * d[0], n[1] - mu * d[1], n[2] - mu * d[2]) if one.slides else n)
-            frictions.append(0.0 if one.slides else mu)
+            frictions.append(0.0 if one.slides else flat.holding())
             x, y, z = [each / self.solid.reach for each in arm]
             effects.append([[1, 0, 0], [0, 1, 0], [0, 0, 1], [0, -z, y], [z, 0, -x], [-y, x, 0]])
         each, forces = np.array(effects, dtype=float).transpose(1, 0, 2).reshape(6, -1), np.array(self.forces)
@@ -447,8 +447,8 @@ class HeldContacts:
         edge = vec.normalised((second[0] - first[0], second[1] - first[1], second[2] - first[2]))
         f, g = self.force(0), self.force(1)
         along, along_other = vec.dot(f, edge), vec.dot(g, edge)
-        room = _room_along(f, flat.normal, along, flat.friction)
-        room_other = _room_along(g, flat.normal, along_other, flat.friction)
+        room = _room_along(f, flat.normal, along, flat.holding())
+        room_other = _room_along(g, flat.normal, along_other, flat.holding())
         total, left = along + along_other, room + room_other
         if left == 0.0:
             return
@@ -473,9 +473,9 @@ class HeldContacts:
         if line == (0.0, 0.0, 0.0):  # the flats are the same
             return
         f, g = self.force(0), self.force(1)
-        low, high = _within_cone(f, line, flat.normal, flat.friction)
+        low, high = _within_cone(f, line, flat.normal, flat.holding())
         low_other, high_other = _within_cone(
-            g, (-line[0], -line[1], -line[2]), flat_other.normal, flat_other.friction
+            g, (-line[0], -line[1], -line[2]), flat_other.normal, flat_other.holding()
         )
         least, most = max(low, low_other), min(high, high_other)
         gap = least - most

@@ -235,7 +235,7 @@ def _striking(solid: Solid, y: Numbers, touching: list[Touch]) -> ContactSet:
     rates = approaches(solid, y, touching)
     flats = [solid.flats[surface] for surface, _ in touching]
     frictions = [flat.friction_at(rate) for flat, rate in zip(flats, rates, strict=True)]
-    return replace(contacts, frictions=np.array(frictions), body_curvatures=None)
+    return replace(contacts, frictions=np.array(frictions), static_frictions=None, body_curvatures=None)
 
 
 def _vector(numbers: list[float]) -> tuple[float, float, float]:

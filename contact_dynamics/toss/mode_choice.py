@@ -7,6 +7,8 @@ friction at a contact could by itself lift the body or press it down (Painleve),
 consistent, and all of them are computed (`contact_modes`). The same is done if all contacts slide and their
 forces may not be unique (`_several_forces`). If some stick, all modes are computed on request, provided that
 friction may wedge the body between planes.
+
+Contacts at rest stick if static friction can hold them, although the body could then also begin to slide.
 """
 
 from __future__ import annotations
@@ -253,7 +255,7 @@ def _correction(
         return None
     if not one.slides:
         across = vec.without(force, n)
-        holds = flat.friction * pressing - vec.norm(across) >= least
+        holds = flat.holding() * pressing - vec.norm(across) >= least
         return one if holds else _beginning(one.touch, vec.opposite(vec.normalised(across)))
     if not first.slides:
         begins = vec.without(pushed.accelerated(first.flat, first.corner), n)
@@ -389,5 +391,5 @@ def may_be_wedged(solid: Solid, touching: list[Touch]) -> bool:
 def _cones_may_meet(one: Flat, other: Flat) -> bool:
     turned = vec.opposite(other.normal)
     between = math.atan2(vec.norm(vec.cross(one.normal, turned)), vec.dot(one.normal, turned))
-    friction = math.atan(one.friction) + math.atan(other.friction)
+    friction = math.atan(one.holding()) + math.atan(other.holding())
     return friction > 0.0 and friction >= _WEDGED_FROM * between

@@ -412,7 +412,7 @@ class _Run:
         still.push(self.y)
         force = still.force(i)
         flat = self.solid.flats[mode[i].flat]
-        return vec.norm(vec.without(force, flat.normal)) <= flat.friction * vec.dot(force, flat.normal)
+        return vec.norm(vec.without(force, flat.normal)) <= flat.holding() * vec.dot(force, flat.normal)
 
     def _stop(self) -> None:
         """Hold the contacts that have stopped sliding where they are."""

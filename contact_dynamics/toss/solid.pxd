@@ -19,9 +19,10 @@ cdef class Flat:
     cdef readonly str name
     cdef readonly (double, double, double) normal
     cdef readonly ((double, double, double), (double, double, double)) tangents
-    cdef readonly double level, friction, restitution, strike_friction, lasting_speed
+    cdef readonly double level, friction, restitution, strike_friction, lasting_speed, static_ratio
 
     cpdef double friction_at(self, double rate) noexcept
+    cpdef double holding(self) noexcept
 
 
 cdef class Above

@@ -57,6 +57,7 @@ class Flat:
         restitution: Coefficient of restitution e.
         strike_friction: Coefficient of friction mu in fast strikes.
         lasting_speed: m/s, the approach speed from which strikes are fast (`friction_at`).
+        static_ratio: Static friction of sustained contact, relative to ``friction``.
     """
 
     def __init__(  # noqa: PLR0917
@@ -69,10 +70,11 @@ class Flat:
         strike_friction: float,
         lasting_speed: float,
         tangents: tuple[Vector3, Vector3],
+        static_ratio: float = 1.0,
     ) -> None:
         self.name, self.normal, self.level, self.tangents = name, normal, level, tangents
         self.friction, self.restitution, self.strike_friction = friction, restitution, strike_friction
-        self.lasting_speed = lasting_speed
+        self.lasting_speed, self.static_ratio = lasting_speed, static_ratio
 
     def __reduce__(self) -> tuple[object, ...]:
         return Flat, (
@@ -84,6 +86,7 @@ class Flat:
             self.strike_friction,
             self.lasting_speed,
             self.tangents,
+            self.static_ratio,
         )
 
     def friction_at(self, rate: float) -> float:
@@ -92,6 +95,10 @@ class Flat:
             return self.strike_friction
         share = max(-rate, 0.0) / self.lasting_speed
         return self.friction + share * (self.strike_friction - self.friction)
+
+    def holding(self) -> float:
+        """Return the friction of a contact that sticks."""
+        return self.static_ratio * self.friction
 
 
 class Solid:
@@ -341,7 +348,7 @@ def solid_of(
 
     Raises:
         NoContactError: the body has no shape that could touch anything.
-        NotSupportedError: the shape has rims, or a surface is an obstacle.
+        NotSupportedError: the shape has rims, or a surface is an obstacle or has static friction alone.
         InvalidFieldError: the number of factors differs from the number of surfaces.
     """
     check_has_shape(body)
@@ -362,9 +369,15 @@ def solid_of(
         normal = (x, y, z)
         level = float(surface.p_WS_W @ surface.normal_W)
         lasting = factor * surface.friction
-        e, mu = surface.restitution, surface.friction
+        e, mu, static = surface.restitution, surface.friction, surface.static_friction or surface.friction
+        if mu == 0.0 and static > 0.0:
+            message = (
+                f"static_friction of {surface.name!r} must be 0 for a toss without friction, got {static:g}"
+            )
+            raise NotSupportedError(message)
+        ratio = static / mu if mu > 0.0 else 1.0
         flats.append(
-            Flat(surface.name, normal, level, lasting, e, mu, surface.lasting_speed, tangents(normal))
+            Flat(surface.name, normal, level, lasting, e, mu, surface.lasting_speed, tangents(normal), ratio)
         )
     I_B = body.mass_properties.I_B
     vertices = body.shape.vertices
@@ -556,6 +569,7 @@ def points_of(solid: Solid, y: Numbers, touching: list[Touch]) -> list[Vector3]:
 def contacts_of(solid: Solid, y: Numbers, touching: list[Touch]) -> ContactSet:
     """Return touching contacts as a `ContactSet`."""
     flats = [solid.flats[touch[0]] for touch in touching]
+    grips = any(flat.static_ratio > 1.0 for flat in flats)
     return ContactSet(
         p_WC_W=np.array(points_of(solid, y, touching)),
         normals_W=np.array([flat.normal for flat in flats]),
@@ -563,4 +577,5 @@ def contacts_of(solid: Solid, y: Numbers, touching: list[Touch]) -> ContactSet:
         restitutions=np.array([flat.restitution for flat in flats]),
         surfaces=[flat.name for flat in flats],
         body_curvatures=alike(len(touching), 1.0 / solid.rounding) if solid.rounding > 0.0 else None,
+        static_frictions=np.array([flat.holding() for flat in flats]) if grips else None,
     )

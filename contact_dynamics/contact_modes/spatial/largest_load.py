@@ -82,9 +82,10 @@ class LargestLoad(Record):
     ones, depending on the direction.
 
     Attributes:
-        factor: Factor up to which rest is consistent, >= 0. It is infinite if rest is consistent under any
-            factor.
-        only_rest: Factor up to which rest is the only consistent mode, <= ``factor``. If it is less than
+        factor: Factor up to which rest is consistent, with static friction, >= 0. It is infinite if rest is
+            consistent under any factor.
+        only_rest: Factor up to which rest is the only consistent mode, <= ``factor``, so that neither static
+            nor kinetic friction allows another one. If it is less than
             ``factor``, it was found by bisection, to 1 %, and modes that are consistent only in an interval
             below it are not searched for. It is 0 if rest is not the only consistent mode without the load,
             or if that is undecided, as often for several bodies.
@@ -337,7 +338,7 @@ class LeastFriction(Record):
         factor: Smallest factor of the given coefficients with which rest is consistent. It is 0 if the body
             rests without friction, and infinite if no friction holds it. Below 1e-9, only rounding error
             prevents an even smaller one.
-        frictions: (n,), these smallest coefficients.
+        frictions: (n,), these smallest coefficients, of static friction if that is larger.
         verdict_below: Verdict with coefficients that are smaller by 1e-6 of them, or None if the factor is
             0. It is UNDECIDED if rest then requires larger normal forces than those allowed.
         modes_below: Consistent modes with these coefficients; none if larger normal forces are required.
@@ -369,11 +370,11 @@ def least_friction(
 ) -> LeastFriction:
     """Return the smallest friction with which a body can stay at rest under the problem's wrench.
 
-    All coefficients of friction are scaled by the same factor, and the body is treated as at rest. With this
-    friction or more, rest is consistent, with contact forces of any size, or within ``max_normal_forces``:
-    fingers that press on a body from opposite sides have to press hard enough. `contact_modes` determines
-    whether rest is the only consistent mode. The factor is exact to about 1e-7, or too large by up to 1e-4
-    of it if contact forces have to exceed the applied wrench many times.
+    All coefficients of friction, static ones included, are scaled by the same factor, and the body is treated
+    as at rest. With this friction or more, rest is consistent, with contact forces of any size, or within
+    ``max_normal_forces``: fingers that press on a body from opposite sides have to press hard enough.
+    `contact_modes` determines whether rest is the only consistent mode. The factor is exact to about 1e-7, or
+    too large by up to 1e-4 of it if contact forces have to exceed the applied wrench many times.
 
     Args:
         problem: The contact problem, with coefficients of friction > 0 at contacts with friction.
@@ -433,8 +434,8 @@ class Closure(Record):
 
     Attributes:
         form: Whether they do without friction, so that the body cannot move: first-order form closure.
-        force: Whether they do with friction, if the contacts are pressed together strongly enough: force
-            closure.
+        force: Whether they do with (static) friction, if the contacts are pressed together strongly enough:
+            force closure.
     """
 
     form: bool
