@@ -739,6 +739,10 @@ is smaller, which is below the last bit."""
 MODE_STRAIGHT: Final = 1e-8
 """rad. Friction within this angle of the direction opposite to sliding opposes it exactly, up to rounding."""
 
+SLIDING_ROUNDED: Final = 1e-14
+"""Relative to the largest acceleration. A smaller acceleration across friction is rounding error: it is some
+50 roundings, in the sum of a few forces. At 1e-7 of the largest acceleration, its direction is known to 1e-7."""
+
 MODE_RESTS: Final = 1e-12
 """Relative to the load. Allowed residual of forces that hold a body."""
 
@@ -780,11 +784,6 @@ LETTERS_SETTLED: Final = 1e-13
 
 LETTERS_REGULAR: Final = 1e-11
 """Ratio of singular values. Below it, the unknowns count as dependent, because loads are shared."""
-
-NEARLY_ALIKE: Final = 1e-3
-"""rad. Normals within this of parallel or opposite, but not within `FLUSH`, such as those of a slot whose
-walls lean by 1e-5 rad, may have forces between them that are a million times the load. In this case the modes
-of friction pyramids are sought too."""
 
 NARROWLY: Final = 1e-11
 """Relative to the largest acceleration. If no mode holds by `STRICT`, one must hold by this. It is a hundred

@@ -81,12 +81,11 @@ from contact_dynamics.tolerances import (
     FLUSH_ROUGHLY,
     HIDDEN_BY_FORCES,
     NARROWLY,
-    NEARLY_ALIKE,
     STRICT,
 )
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
+    from collections.abc import Callable, Iterator, Sequence
 
     from contact_dynamics.contact_modes.spatial.problem import SpatialContactProblem
     from contact_dynamics.contact_modes.spatial.search import Search
@@ -361,7 +360,7 @@ def _sought(case: SpatialCase, search: Search, *, beside_rest: bool, hurried: bo
     enough = ENOUGH_PROGRAMS if search.freedoms <= ONE_BODY else ENOUGH_PROGRAMS_OF_SEVERAL
     most = FEW_PROGRAMS if hurried else enough
     found = _with_others(case, search, modes, beside_rest=beside_rest, most=most)
-    if hurried or (found.modes and not found.undecided and not _nearly_alike(case)):
+    if hurried or (found.modes and not found.undecided):
         return found
     return _searched(case, search, found, beside_rest=beside_rest)
 
@@ -370,7 +369,7 @@ def _searched(case: SpatialCase, search: Search, found: Evidence, *, beside_rest
     """Return the modes of a case, with those that a search of the pyramids finds beside known ones."""
     known = all(one.frame is None for one in search.pyramids)
     undecided = {staying_bits(case.of_touching(letters)) for letters in found.undecided_modes}
-    if search.completed and found.modes and not (known or _nearly_alike(case)):
+    if search.completed and found.modes and not known:
         search.staying = sorted(undecided)  # others are decided
     try:
         kept = found_by(case, search, sharpen=True)
@@ -385,16 +384,10 @@ def _searched(case: SpatialCase, search: Search, found: Evidence, *, beside_rest
     among = None
     if search.completed:
         among = sorted(undecided | {staying_bits(case.of_touching(mode.mode)) for mode in further})
-    return _with_others(case, search, every, beside_rest=beside_rest, most=MAX_PROGRAMS, among=among)
-
-
-def _nearly_alike(case: SpatialCase) -> bool:
-    """Return whether normals are nearly alike or opposite: bounds overlook huge forces between them."""
-    normals = case.contacts.normals_W[case.touching]
-    apart = np.minimum(
-        np.linalg.norm(normals[:, None] - normals, axis=2), np.linalg.norm(normals[:, None] + normals, axis=2)
+    open_ones = [case.of_touching(letters) for letters in found.undecided_modes] if search.completed else []
+    return _with_others(
+        case, search, every, beside_rest=beside_rest, most=MAX_PROGRAMS, among=among, open_ones=open_ones
     )
-    return bool(((apart > FLUSH) & (apart < NEARLY_ALIKE)).any())
 
 
 def _with_others(
@@ -405,10 +398,12 @@ def _with_others(
     beside_rest: bool,
     most: int,
     among: list[int] | None = None,
+    open_ones: Sequence[str] = (),
 ) -> Evidence:
     """Return modes that were found, with all others.
 
-    ``among`` may limit the search to some choices of contacts that stay.
+    ``among`` may limit the search to some choices of contacts that stay. An earlier one has left
+    ``open_ones`` undecided.
     """
     known = Evidence(modes, "")
     if _is_alone(case, search, modes):
@@ -419,7 +414,7 @@ def _with_others(
             return known
         if _is_alone(case, search, known.modes):
             return Evidence([mode for mode in known.modes if is_exact(mode)], "")
-    found = _completed(case, search, known.modes, most=most, among=among)
+    found = _completed(case, search, known.modes, most=most, among=among, open_ones=open_ones)
     return found._replace(undecided=found.undecided or known.undecided)
 
 
@@ -438,7 +433,13 @@ def _mode_of(case: SpatialCase, known: Known) -> ResponseMode:
 
 
 def _completed(
-    case: SpatialCase, search: Search, found: list[ResponseMode], *, most: int, among: list[int] | None
+    case: SpatialCase,
+    search: Search,
+    found: list[ResponseMode],
+    *,
+    most: int,
+    among: list[int] | None,
+    open_ones: Sequence[str],
 ) -> Evidence:
     """Return the modes that were found and are exact, and those that were missed."""
     exact = [mode for mode in found if is_exact(mode)]
@@ -450,7 +451,7 @@ def _completed(
         )
         for mode in exact
     ]
-    missed = completed(search, known, most=most, among=among)
+    missed = completed(search, known, most=most, among=among, open_ones=open_ones)
     exact += [_mode_of(case, one) for one in missed.further]
     names = [case.of_all(letters) for letters in missed.undecided]
     undecided = _MISSED.format(", ".join(names)) if names else ""

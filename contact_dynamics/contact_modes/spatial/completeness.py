@@ -74,6 +74,9 @@ as it leaves letters undecided."""
 _CARE: Final = 3
 """Number of additional programs that a `CarefulProgram` counts as."""
 
+_SOLVING: Final = 6
+"""Number of additional programs that a search by Newton's method counts as, if the whole gives up soon."""
+
 _MAX_TRIES: Final = 3
 """The number of regions with the same letters in whose middle a mode is sought. The second mostly has one."""
 
@@ -153,14 +156,21 @@ class _Set(NamedTuple):
 
 
 def completed(
-    search: Search, known: Sequence[Known], *, most: int, among: list[int] | None = None
+    search: Search,
+    known: Sequence[Known],
+    *,
+    most: int,
+    among: list[int] | None = None,
+    open_ones: Sequence[str] = (),
 ) -> Completed:
     """Return the modes that are not known yet, and the letters that may have more.
 
     All known modes are exact. The search gives up after ``most`` programs. ``among`` may limit it to some
-    choices of contacts that stay. Whether a body at rest can stick at all contacts is not decided here.
+    choices of contacts that stay, and ``open_ones`` are letters that an earlier search has left undecided.
+    Whether a body at rest can stick at all contacts is not decided here.
     """
     work = _Work(search, known, most=most, among=among)
+    work.leave_open(open_ones)
     unended = ""
     try:
         work.decide_who_stays()
@@ -212,7 +222,7 @@ class _Work(PyramidPrograms):
         self._search, self.flats = search, search.flats
         self.staying = among
         self._refutes = refutes
-        self._most = most
+        self._most, self._hurried = most, most <= FEW_PROGRAMS
         self._slides_alone = False  # whether the modes with less than static friction are known
         self._grips: list[int] = []  # the contacts at rest that have more static friction
         self._open = [i for i, one in enumerate(search.pyramids) if one.frame is not None]
@@ -371,6 +381,7 @@ class _Work(PyramidPrograms):
 
     def _slides_together(self, letters: str, near: Sequence[FloatArray]) -> bool:
         """Return whether all modes with some letters are known, after a search near some motions, (d,)."""
+        self.examined += _SOLVING * self._hurried
         held = sliding_together(self._search, letters, near)
         if held.forces is None:
             return held.certain
@@ -469,6 +480,7 @@ class _Work(PyramidPrograms):
 
     def _solve(self, letters: str, forces: FloatArray, *, new: bool = False) -> None:
         """Keep a solution near some forces, and the mode that it is if that is new."""
+        self.examined += _SOLVING * self._hurried
         solution = solution_near(self._search, letters, forces) or solution_near(
             self._search, letters, forces, shared=True
         )
@@ -485,10 +497,15 @@ class _Work(PyramidPrograms):
                 unique = solution.equations is not None
                 self._keep(Known(letters, solution.forces, alone=True, forces_unique=unique))
 
+    def leave_open(self, letters: Sequence[str]) -> None:
+        """Leave letters undecided that an earlier search has left so, unless modes have them now."""
+        self.undecided += [one for one in letters if one not in self._held]
+        self._decided.update(self.undecided)
+
     def _leave(self, letters: str) -> None:
         """Leave some letters undecided."""
         self.undecided.append(letters)
-        if self._most <= FEW_PROGRAMS:
+        if self._hurried:
             raise _TooManyError
 
     def _keep(self, mode: Known) -> None:

@@ -141,7 +141,7 @@ def forces_with_letters(
     ways (``shared``), contacts without force stay without it. Strict inequalities must hold by ``least``,
     relative to the largest acceleration.
     """
-    system = _System(search, letters, forces if shared else None)
+    system = _system(search, letters, forces if shared else None)
     unknowns = _solved(system, forces, shared=shared)
     if unknowns is None:
         return None
@@ -166,7 +166,7 @@ def solution_near(
 
     It is None too if the equations leave something open and contacts may not share loads.
     """
-    system = _System(search, letters, forces if shared else None)
+    system = _system(search, letters, forces if shared else None)
     unknowns = _solved(system, forces, shared=shared)
     if unknowns is None:
         return None
@@ -174,10 +174,10 @@ def solution_near(
     holds = system.has_letters(found)
     if not shared:
         return Solution(found, system.angles(unknowns), holds, system.equations(unknowns))
-    every, angles = _System(search, letters, None), system.sliding(found)
+    every, angles = _system(search, letters, None), system.sliding(found)
     start = every.start(found)
-    for k, (i, is_angle) in enumerate(every.unknowns):
-        if is_angle and not found[i].any():  # there is no friction to show the direction
+    for k, i in zip(every.turns, every.turning, strict=True):
+        if not found[i].any():  # there is no friction to show the direction
             start[k] = angles[i]
     return Solution(found, angles, holds, None, every.is_motion_unique(start))
 
@@ -210,77 +210,89 @@ def _sizes(slopes: FloatArray) -> FloatArray:
     return sizes
 
 
+def _system(search: Search, letters: str, acting: FloatArray | None) -> _System:
+    """Return the equations of letters, stated once.
+
+    Contacts without force in ``acting``, (n, 3), have none. If it is None, all may act.
+    """
+    sizes = np.ones(len(letters)) if acting is None else np.sqrt((acting * acting).sum(axis=1))
+    acts = tuple((sizes > LETTERS_NO_FORCE * sizes.max(initial=0.0)).tolist())
+    if (letters, acts) not in search.systems:
+        search.systems[letters, acts] = _System(search, letters, acts)
+    found: _System = search.systems[letters, acts]
+    return found
+
+
 class _System:
     """The equations of some letters."""
 
-    def __init__(self, search: Search, letters: str, acting: FloatArray | None) -> None:
-        """State the equations of letters.
-
-        Contacts without force in ``acting``, (n, 3), have none. If it is None, all may act.
-        """
+    def __init__(self, search: Search, letters: str, acts: tuple[bool, ...]) -> None:
+        """State the equations of letters, where some contacts do not act: they have no force."""
         self._search, self._letters = search, letters
         self._frames = [None if one.frame is None else np.array(one.frame) for one in search.pyramids]
-        sizes = np.ones(len(letters)) if acting is None else np.linalg.norm(acting, axis=1)
-        self._acts = (sizes > LETTERS_NO_FORCE * sizes.max(initial=0.0)).tolist()
-        self.unknowns: list[tuple[int, bool]] = []  # the contact of each, and whether it is a direction
-        for i, letter in enumerate(letters):
-            if letter != SEPARATES and self._acts[i]:
-                self.unknowns += [(i, False)] * (3 if letter == STICKS else 1)
-                if letter == STAYS and self._frames[i] is not None:
-                    self.unknowns.append((i, True))
+        rows: list[FloatArray] = []
+        units: list[tuple[int, FloatArray, FloatArray]] = []  # contact, unit force, and what it is read along
+        self.turning: list[int] = []  # the contacts with unknown directions
+        self.turns: list[int] = []  # which of the unknowns these are
+        self._turned: list[int] = []  # the equations that turn with them
+        for i, (letter, frame) in enumerate(zip(letters, self._frames, strict=True)):
+            normal, point = search.touching[i].normal, search.touching[i].point
+            if letter == STICKS:
+                rows += list(point)
+                units += [(i, axis, axis) for axis in np.eye(3)] if acts[i] else []
+            elif letter != SEPARATES:
+                rows.append(normal @ point)
+                if acts[i] and frame is None:
+                    units.append((i, search.pyramids[i].edges[0], normal))
+                elif acts[i]:
+                    self.turning.append(i)
+                    self.turns.append(len(units) + 1)
+                    self._turned.append(len(rows))
+                    units += [(i, normal, normal), (i, 0.0 * normal, 0.0 * normal)]
+                    rows.append(0.0 * rows[-1])
+        self._rows = np.array(rows).reshape(-1, search.freedoms + 1)
+        self._edges, self._along = np.zeros((2, 3 * len(letters), len(units)))
+        for k, (i, unit, along) in enumerate(units):
+            self._edges[3 * i : 3 * i + 3, k], self._along[3 * i : 3 * i + 3, k] = unit, along
+        self._frictions = np.zeros((2, 3 * len(letters), len(self.turning)))  # along the frames
+        self._slides = np.zeros((2, len(self.turning), search.freedoms + 1))  # the sliding along the frames
+        for k, i in enumerate(self.turning):
+            contact, own = search.touching[i], np.array(search.pyramids[i].frame)
+            self._frictions[:, 3 * i : 3 * i + 3, k] = contact.friction * own
+            self._slides[:, k] = own @ contact.point
 
     @property
     def may_be_regular(self) -> bool:
         """Whether shares of force are so few that they can all differ in the motion."""
-        return sum(not is_angle for _, is_angle in self.unknowns) <= self._search.freedoms
+        return len(self._edges.T) - len(self.turns) <= self._search.freedoms
 
     def start(self, forces: FloatArray) -> FloatArray:
         """Return the unknowns that are nearest to given forces."""
-        found: list[float] = []
-        for i, letter in enumerate(self._letters):
-            contact, frame = self._search.touching[i], self._frames[i]
-            if letter == SEPARATES or not self._acts[i]:
-                continue
-            if letter == STICKS:
-                found += forces[i].tolist()
-                continue
-            found.append(float(forces[i] @ contact.normal))
-            if frame is not None:
-                against = forces[i] if contact.friction > 0.0 else -(contact.point @ self._motion(forces))
-                x, y = frame @ against
-                found.append(math.atan2(-y, -x))
-        return np.array(found)
+        found: FloatArray = forces.ravel() @ self._along
+        x, y = np.where(
+            self._frictions.any(axis=(0, 1)),
+            forces.ravel() @ self._frictions,
+            -self._slides @ self._motion(forces),  # there is no friction to show the direction
+        )
+        found[self.turns] = np.arctan2(-y, -x)
+        return found
 
     def at(self, unknowns: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Return by how much the equations are missed, (m,), and the derivatives of that, (m, k)."""
         forces, changes = self._forces_and_changes(unknowns)
-        motion = self._motion(forces)
-        of_unknowns = self._search.of_forces @ changes
-        missed, slopes = [], []
-        at = 0
-        for i, letter in enumerate(self._letters):
-            contact, frame = self._search.touching[i], self._frames[i]
-            point, moved = contact.point @ motion, contact.point[:, :-1] @ of_unknowns
-            if letter == STICKS:
-                missed += point.tolist()
-                slopes += list(moved)
-                at += 3 * self._acts[i]
-            elif letter != SEPARATES:
-                missed.append(float(contact.normal @ point))
-                slopes.append(contact.normal @ moved)
-                if not self._acts[i]:
-                    continue
-                at += 1
-                if frame is not None:
-                    x, y = math.cos(unknowns[at]), math.sin(unknowns[at])
-                    one, two = frame
-                    across = x * two - y * one
-                    missed.append(float(across @ point))
-                    slope = across @ moved
-                    slope[at] -= float((x * one + y * two) @ point)
-                    slopes.append(slope)
-                    at += 1
-        return np.array(missed), np.array(slopes)
+        motion, rows = self._motion(forces), self._rows_at(unknowns)
+        slopes = rows[:, :-1] @ (self._search.of_forces @ changes)
+        along, across = self._slides @ motion
+        x, y = np.cos(unknowns[self.turns]), np.sin(unknowns[self.turns])
+        slopes[self._turned, self.turns] -= x * along + y * across
+        return rows @ motion, slopes
+
+    def _rows_at(self, unknowns: FloatArray) -> FloatArray:
+        """Return the rows, (m, d + 1), whose products with the motion vanish."""
+        x, y = np.cos(unknowns[self.turns])[:, None], np.sin(unknowns[self.turns])[:, None]
+        rows = self._rows.copy()
+        rows[self._turned] = x * self._slides[1] - y * self._slides[0]
+        return rows
 
     def forces(self, unknowns: FloatArray) -> FloatArray:
         """Return the contact forces, (n, 3). Those that pull no more than by rounding are zero."""
@@ -338,35 +350,20 @@ class _System:
 
     def angles(self, unknowns: FloatArray) -> dict[int, float]:
         """Return the direction, rad, in which each contact begins to slide."""
-        return {i: float(unknowns[k]) for k, (i, is_angle) in enumerate(self.unknowns) if is_angle}
+        return dict(zip(self.turning, unknowns[self.turns].tolist(), strict=True))
 
     def equations(self, unknowns: FloatArray) -> Equations:
         """Return the equations at a solution, with as many unknowns."""
         forces, changes = self._forces_and_changes(unknowns)
-        rows, rows_turn = np.zeros((2, len(unknowns), self._search.freedoms + 1))
+        rows_turn = np.zeros_like(self._rows)
+        rows_turn[self._turned] = np.abs(self._slides).sum(axis=0)
         changes_turn = np.zeros((self._search.freedoms, len(unknowns)))
-        angles = []
-        for k, (i, is_angle) in enumerate(self.unknowns):
-            contact, frame = self._search.touching[i], self._frames[i]
-            if self._letters[i] == STICKS:
-                first = next(j for j, one in enumerate(self.unknowns) if one[0] == i)
-                rows[k] = contact.point[k - first]
-                continue
-            rows[k] = contact.normal @ contact.point
-            if frame is None:
-                continue
-            leaning = contact.friction * frame
-            of_contact = self._search.of_forces[:, 3 * i : 3 * i + 3]
-            changes_turn[:, k] = np.abs(of_contact @ leaning.T).sum(axis=1)
-            if is_angle:
-                angles.append(k)
-                across = np.array([-math.sin(unknowns[k]), math.cos(unknowns[k])])
-                rows[k] = across @ frame @ contact.point
-                rows_turn[k] = np.abs(frame @ contact.point).sum(axis=0)
+        changes_turn[:, self.turns] = np.abs(self._search.of_forces @ self._frictions).sum(axis=0)
+        changes_turn[:, np.array(self.turns, dtype=np.intp) - 1] = changes_turn[:, self.turns]
         return Equations(
             unknowns=unknowns,
-            angles=angles,
-            rows=rows,
+            angles=self.turns,
+            rows=self._rows_at(unknowns),
             rows_turn=rows_turn,
             changes=self._search.of_forces @ changes,
             changes_turn=changes_turn,
@@ -378,25 +375,11 @@ class _System:
         return np.append(self._search.motion_of(forces), 1.0)
 
     def _forces_and_changes(self, unknowns: FloatArray) -> tuple[FloatArray, FloatArray]:
-        forces = np.zeros((len(self._letters), 3))
-        changes = np.zeros((3 * len(self._letters), len(unknowns)))
-        at = 0
-        for i, letter in enumerate(self._letters):
-            contact, frame, own = self._search.touching[i], self._frames[i], slice(3 * i, 3 * i + 3)
-            if letter == SEPARATES or not self._acts[i]:
-                continue
-            if letter == STICKS:
-                forces[i] = unknowns[at : at + 3]
-                changes[own, at : at + 3] = np.eye(3)
-                at += 3
-                continue
-            edge = self._search.pyramids[i].edges[0]  # the only one, unless the direction is unknown
-            if frame is not None:
-                x, y = math.cos(unknowns[at + 1]), math.sin(unknowns[at + 1])
-                one, two = frame
-                edge = contact.normal - contact.friction * (x * one + y * two)
-                changes[own, at + 1] = unknowns[at] * contact.friction * (y * one - x * two)
-            forces[i] = unknowns[at] * edge
-            changes[own, at] = edge
-            at += 1 if frame is None else 2
-        return forces, changes
+        """Return the contact forces, (n, 3), and their derivatives by the unknowns, (3 n, k)."""
+        x, y = np.cos(unknowns[self.turns]), np.sin(unknowns[self.turns])
+        shares = np.array(self.turns, dtype=np.intp) - 1
+        changes, linear = self._edges.copy(), unknowns.copy()
+        changes[:, shares] -= x * self._frictions[0] + y * self._frictions[1]
+        changes[:, self.turns] = unknowns[shares] * (y * self._frictions[0] - x * self._frictions[1])
+        linear[self.turns] = 0.0
+        return (changes @ linear).reshape(-1, 3), changes

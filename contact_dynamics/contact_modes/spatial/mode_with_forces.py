@@ -28,6 +28,7 @@ from contact_dynamics.tolerances import (
     MODE_STRAIGHT,
     ON_PYRAMIDS_SIDE,
     SAME_MOTION,
+    SLIDING_ROUNDED,
     STRICT,
 )
 
@@ -67,8 +68,12 @@ def mode_with_forces(
         letters[i] = STICKS if rests else letter
         if letters[i] == STAYS:
             friction = forces[i] - float(forces[i] @ contacts.normals_W[i]) * contacts.normals_W[i]
-            if size <= STRICT * motion.scale and friction.any():
-                way, size = -friction, float(np.linalg.norm(friction))  # the sliding is hardly above rounding
+            rubs = float(np.linalg.norm(friction))
+            aside = float(np.linalg.norm(cross_of_two(friction, way)))
+            begins = not np.any(sliding[i]) and friction @ way < 0.0
+            rounded = begins and aside <= SLIDING_ROUNDED * motion.scale * rubs
+            if rubs > 0.0 and (rounded or size <= STRICT * motion.scale):
+                way, size = -friction, rubs  # friction shows the direction better than the acceleration
             directions[i] = way / size if size > 0.0 else way
     of_contacts: dict[str, Any] = {
         "mode": "".join(letters),

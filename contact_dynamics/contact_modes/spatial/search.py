@@ -27,7 +27,7 @@ of round cones (`completeness`).
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from typing import TYPE_CHECKING, Final, NamedTuple
+from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
 import numpy as np
 
@@ -113,6 +113,7 @@ class PyramidPrograms(ABC):
         self.staying: list[int] | None = None  # the choices of contacts that stay, as bits; None for all
         self.completed = False  # whether a search with round cones (`completeness`) has ended
         self.flats: dict[tuple[tuple[int, ...], tuple[int, ...]], Flat] = {}
+        self.systems: dict[tuple[str, tuple[bool, ...]], Any] = {}  # equations of letters (`exact_letters`)
         self.most_examined = MAX_EXAMINED if self.freedoms <= ONE_BODY else MAX_EXAMINED_OF_SEVERAL
         self._first_normal = first  # the name of contact 0's normal acceleration
         self.normals = np.array([one.normal for one in touching]).reshape(-1, 3)

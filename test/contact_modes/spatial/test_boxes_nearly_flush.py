@@ -141,8 +141,10 @@ def test_noise_that_counts_as_none_changes_no_verdict_and_no_letter(seed: int) -
 
 def test_forces_that_hide_the_motion_make_no_mode() -> None:
     """In this stack a mode was found with forces of 3e14 N, under which contacts penetrate at 0.01 m/s^2."""
-    verdict, _ = check(1922, noise_of(1922, -4))
-    assert verdict == ModeVerdict.UNIQUE
+    check(1922, noise_of(1922, -4))
+    modes = contact_modes(problem_of(flush(1922, noise_of(1922, -4)))).modes
+    assert "ffffffff" in {mode.mode for mode in modes}
+    assert all(np.abs(mode.contact_forces_W).max() <= 1e3 for mode in modes)
 
 
 @pytest.mark.parametrize(("seed", "decade"), [(74, -13), (74, -11), (1398, -9)])
