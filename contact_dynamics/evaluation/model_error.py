@@ -21,6 +21,7 @@ from contact_dynamics.validation import check_array, check_not_negative
 from contact_dynamics.world import Surface
 
 if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator
     from pathlib import Path
 
     from contact_dynamics.measured.events import FoundEvent
@@ -55,6 +56,8 @@ class ModelError(Record):
     height: float = 0.0  # m, >= 0, of the height of a corner at a first contact
     # (3, 3), m^2/s^4, covariance of gravity from one recording to another, world axes
     gravity_W: FloatArray = field(default_factory=lambda: np.zeros((3, 3)))
+    body_name: str = ""  # of the calibrated body. The errors are applied to all bodies
+    problems: tuple[str, ...] = ()  # that the calibration reported
 
     def __post_init__(self) -> None:
         """Check all fields."""
@@ -66,6 +69,14 @@ class ModelError(Record):
     def freedom(self) -> float:
         """Degrees of freedom of Student's t for impacts; infinite if differences are normal."""
         return FREEDOM if max(self.velocity, self.spin) > 0.0 else math.inf
+
+    def doubts(self, bodies: Iterable[str]) -> Iterator[str]:
+        """Yield reasons, in words, for which the errors may be wrong in predictions of bodies."""
+        others = sorted({name for name in bodies if self.body_name and name != self.body_name})
+        if others:
+            yield f"calibration: the model errors of {self.body_name!r} are applied to {', '.join(others)}"
+        for problem in self.problems:
+            yield f"calibration: {problem}"
 
     def of_event(self, event: FoundEvent, world: World) -> FoundEvent:
         """Return an event whose time at a first contact includes the error of the height."""
@@ -104,7 +115,9 @@ def model_error_of(path: Path, name: str = "--calibration") -> ModelError:
             spin=spread["spin"],
             height=spread["strike_height"],
             gravity_W=content.get("gravity_covariance_W") or np.zeros((3, 3)),
+            body_name=content.get("body", {}).get("name", ""),
+            problems=tuple(content.get("problems", ())),
         )
-    except (OSError, ValueError, KeyError, TypeError):
+    except (OSError, ValueError, KeyError, TypeError, AttributeError):
         expected = "a readable file that calibrate --json has written"
         raise InvalidFieldError(name, str(path), expected) from None

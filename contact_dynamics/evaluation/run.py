@@ -64,6 +64,9 @@ def _evaluate(given: argparse.Namespace) -> int:
             print(f"contact-dynamics evaluate: {result.source}: {result.problem}", file=sys.stderr)
         return NOTHING
     print(report(evaluation), flush=True)
+    bodies = (event.body for result in evaluation.results for event in result.events)
+    for doubt in settings.error.doubts(bodies):
+        print(doubt, file=sys.stderr)
     _write(given, evaluation)
     if given.against is not None:
         other = against or _all(given, settings, sources, [], asked_with=given.against)

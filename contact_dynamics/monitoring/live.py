@@ -218,6 +218,8 @@ class LiveMonitor(ManagedNode):
             raise ConfigurationError(message)
         path: str = self.get_parameter(CALIBRATION).value
         error = model_error_of(Path(path), CALIBRATION) if path else ModelError()
+        for doubt in error.doubts(body.name for body in configuration.world.bodies):
+            self.get_logger().warning(doubt)
         return Monitoring(self, configuration, run=run, error=error)
 
 

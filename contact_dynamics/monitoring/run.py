@@ -46,7 +46,7 @@ def _monitor(given: argparse.Namespace) -> int:
     error = ModelError() if given.calibration is None else model_error_of(given.calibration)
     sources, refused = find_sources(given.recordings)
     monitor: Monitor | None = None
-    summary, changed = Summary(), False
+    summary, changed, bodies = Summary(), False, set[str]()
     with ExitStack() as stack:
         file = None if given.json is None else stack.enter_context(given.json.open("w", encoding="utf-8"))
         for source in sources:
@@ -60,6 +60,7 @@ def _monitor(given: argparse.Namespace) -> int:
             monitor.informed = recording.informed
             for event in monitored(monitor, recording):
                 summary.add(event)
+                bodies.add(event.body)
                 changed |= event.surface_report is not None and event.surface_report.is_new
                 print(f"{source.name}: {line_of(event)}", flush=True)
                 if file is not None:
@@ -69,6 +70,8 @@ def _monitor(given: argparse.Namespace) -> int:
     if monitor is None:
         return NOTHING
     print(summary)
+    for doubt in error.doubts(bodies):
+        print(doubt, file=sys.stderr)
     return CHANGED if changed or refused else 0
 
 

@@ -138,6 +138,25 @@ def test_the_command_names_a_file_that_is_no_calibration(
     assert "calibrate --json" in capsys.readouterr().err
 
 
+def test_a_calibration_of_another_body_and_its_problems_are_named(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    log, found = write_log(tmp_path / "log", until=BRIEF), tmp_path / "cube.json"
+    spread = {"velocity": 0.02, "spin": 0.3, "strike_height": 0.0}
+    content = {"spread": spread, "body": {"name": "cube"}, "problems": ["Too few impacts."]}
+    found.write_text(json.dumps(content), encoding="utf-8")
+    main(["monitor", str(log), "--calibration", str(found)])
+    told = capsys.readouterr().err
+    assert "calibration: the model errors of 'cube' are applied to brick" in told
+    assert "calibration: Too few impacts." in told
+    main(["evaluate", str(log), "--calibration", str(found), "--horizons", "50", "--laws", "poisson"])
+    told = capsys.readouterr().err
+    assert "calibration: the model errors of 'cube' are applied to brick" in told
+    found.write_text(json.dumps({"spread": spread, "body": {"name": "brick"}}), encoding="utf-8")
+    main(["monitor", str(log), "--calibration", str(found)])
+    assert "calibration" not in capsys.readouterr().err
+
+
 @pytest.mark.skipif(not TOSSES.is_file(), reason=f"no published tosses at {TOSSES} (CUBE_TOSSES)")
 def test_recorded_cubes_as_calibrated_and_with_less_friction(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
