@@ -740,8 +740,8 @@ MODE_STRAIGHT: Final = 1e-8
 """rad. Friction within this angle of the direction opposite to sliding opposes it exactly, up to rounding."""
 
 SLIDING_ROUNDED: Final = 1e-14
-"""Relative to the largest acceleration. A smaller acceleration across friction is rounding error: it is some
-50 roundings, in the sum of a few forces. At 1e-7 of the largest acceleration, its direction is known to 1e-7."""
+"""Relative to the largest acceleration. A smaller acceleration across friction is rounding error: some 50
+roundings in a sum of forces. The direction of an acceleration of 1e-7 of the largest is known to 1e-7 rad."""
 
 MODE_RESTS: Final = 1e-12
 """Relative to the load. Allowed residual of forces that hold a body."""
