@@ -123,7 +123,7 @@ def impacts_question_from_msg(
 
 
 def flat_rows(field: str, numbers: Sequence[float], width: int) -> FloatArray:
-    """Return the numbers of a flat field as rows, or raise `InvalidFieldError` if they do not come out."""
+    """Return the numbers of a flat field as rows, or raise `InvalidFieldError` if a row is incomplete."""
     if len(numbers) % width:
         raise InvalidFieldError(field, f"{len(numbers)} numbers", f"rows of {width}")
     return np.array(numbers, dtype=np.float64).reshape(-1, width)

@@ -165,7 +165,7 @@ OF_CONTACTS: Final = (
     fields.Row("forces_unique", "forces_unique"),
     fields.Row("motion_unique", "motion_unique"),
 )
-"""What a mode says of the contacts, of one body or of several."""
+"""The part of a mode about its contacts, of one body or of several."""
 
 MODE: Final = fields.Table(
     SpatialMode,

@@ -79,7 +79,7 @@ def impact_question_from_msg(
 
 
 def _several_contacts_law(request: PredictImpact.Request) -> SeveralContactsLaw | InTime:
-    """Return the law for several contacts that a request asks for, or raise `InvalidFieldError`."""
+    """Return the law for several contacts in a request, or raise `InvalidFieldError`."""
     value = request.several_contacts_law
     if value == request.SEQUENTIAL_IN_TIME:
         window = optional(request.strike_window)

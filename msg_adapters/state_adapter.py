@@ -35,8 +35,8 @@ class SourceSettings:
         body_frame: The frame of the body, whose pose is published.
         world_frame: The frame that states are in.
         p_FB_F: (3,), m, the body's centre of mass in its frame.
-        velocity_window: s, the time over which a velocity is found from poses.
-        static: The transforms between frames that stand still, as far as they are known.
+        velocity_window: s, duration of the poses from which a velocity is estimated.
+        static: The static transforms received so far.
     """
 
     body_name: str

@@ -66,7 +66,7 @@ _SAME = FramePose(p=np.zeros(3), q=np.array([0.0, 0.0, 0.0, 1.0]))
 class _Link:
     parent: str
     pose: FramePose
-    stamp_ns: int | None  # None stands still
+    stamp_ns: int | None  # None if it is static
 
 
 class TransformTree:

@@ -47,7 +47,7 @@ if TYPE_CHECKING:
     from contact_dynamics.validation import FloatArray
 
 MAX_RATIOS: Final = 4
-"""Bound on how often rotations of first flights are made linear anew, at the ratios of moments found last."""
+"""Largest number of linearisations of the rotations of first flights, at the last ratios of moments."""
 
 DIRECTION_SHARE: Final = 0.2
 """Least component, in standard units, with which a parameter takes part in an undetermined direction."""

@@ -14,7 +14,7 @@ class Free(Enum):
     RESTITUTION = "restitution"  # the coefficient e of each surface, under Poisson's law
     CENTER_OF_MASS = "center_of_mass"  # the centre of mass in the body's frame, three coordinates
     INERTIA = "inertia"
-    """One factor on the inertia. Flights alone do not tell it; strikes tell it relative to the mass."""
+    """One factor on the inertia. Flights alone do not determine it; strikes do, relative to the mass."""
     INERTIA_RATIOS = "inertia_ratios"
     """Two factors: those of the moments about y and z relative to x, in the body's axes."""
     ROUNDING = "rounding"  # the radius of the corners, at equal outer faces

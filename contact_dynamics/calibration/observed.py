@@ -133,7 +133,7 @@ def _thrown_again(motion: MeasuredMotion, last: slice, flight: slice) -> bool:
 
 
 def _rests_by(motion: MeasuredMotion, begin: int, end: int) -> int:
-    """Return the end frame of a toss that may come to rest before it is picked up."""
+    """Return the end frame of a toss, which may come to rest before it is picked up."""
     count = LONGEST_REST * max(FEWEST_FRAMES, round(REST_SPAN * motion.rate))
     for stop in np.arange(begin + count, end + 1, max(1, count // 4)).tolist():
         if find_rest(motion.part(stop - count, stop)) is not None:

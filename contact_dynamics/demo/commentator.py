@@ -87,11 +87,11 @@ class Commentator(Node):
 
     @property
     def is_over(self) -> bool:
-        """Whether there were states, and come no more."""
+        """Whether there were states, and no more arrive."""
         return self._silence is not None and self._silence.is_over
 
     def comment(self) -> None:
-        """Ask once, and print what was answered if it is new; then listen until the next question is due."""
+        """Send a request, print its response if it is new, and receive until the next request is due."""
         due = time.monotonic() + PERIOD_S
         words = self._comment()
         if words and words != self._told:
@@ -103,7 +103,7 @@ class Commentator(Node):
             self._spin()
 
     def _comment_on_the_box(self) -> str:
-        """Tell what the next landing does, or in which mode the box lies."""
+        """Return the outcome of the next landing, or the contact mode of the box."""
         answer = self._ask(self._impact, PredictImpact.Request(body_name=self._body.name))
         if answer is None or answer.status != answer.OK or answer.time_to_contact < SOON_S:
             request = PredictContactMode.Request(body_name=self._body.name)
@@ -191,7 +191,7 @@ class Commentator(Node):
             self._newest[msg_type] = msg
             self._silence = Patience(SILENCE_S)
 
-        self.create_subscription(msg_type, topic, keep, 1)  # the newest alone
+        self.create_subscription(msg_type, topic, keep, 1)  # only the latest
 
 
 def main(arguments: list[str]) -> int:

@@ -24,16 +24,16 @@ if TYPE_CHECKING:
     from contact_dynamics.validation import FloatArray
 
 SPAN_S: Final = WINDOW  # s. Velocities are found from the poses of this time after the impact.
-LATE_S: Final = 0.003  # s. A strike may come this much later than predicted. Poses before that are left out.
+LATE_S: Final = 0.003  # s. Largest delay of a strike after its prediction. Earlier poses are left out.
 
 KEPT_S: Final = 0.5
-"""s. States of this time are kept for answers that come after them. Where states are drawn seldom, or an
-answer takes long, it comes a few tenths of a second late."""
+"""s. Duration of the stored states, for answers that arrive after them. If states are drawn seldom, or an
+answer takes long, the delay is a few tenths of a second."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class AfterImpact:
-    """What a body did after an impact, beside the prediction."""
+    """The motion of a body after an impact, beside the prediction."""
 
     answer: ImpactAnswer  # the prediction
     # The stamps of the poses that the velocities are found from, and of the curves.
@@ -56,9 +56,9 @@ class AfterImpact:
 
 
 class AwaitedImpacts:
-    """The predicted impacts of bodies that are still to come, or of which too little has been seen.
+    """The predicted impacts of bodies that are not over, or not measured enough yet.
 
-    An answer may come after the states that show what became of it. So the newest states are kept.
+    An answer may arrive after the states that show its outcome, so the latest states are stored.
     """
 
     def __init__(self, *, gravity_W: FloatArray) -> None:
@@ -68,15 +68,14 @@ class AwaitedImpacts:
         self._seen: dict[str, list[BodyState]] = {}  # since the first awaited impact, and the newest
 
     def expect(self, answer: ImpactAnswer, *, now_ns: int) -> None:
-        """Wait for an impact. If it has been seen already, `see` returns it the next time.
+        """Wait for an impact. If it has been measured already, `see` returns it the next time.
 
-        It takes the place of those that had not come by ``now_ns``, ns, either. Without a stamp there is no
-        knowing when it comes.
+        It replaces those that have not begun by ``now_ns``, ns, either. Without a stamp, its time is unknown.
         """
         strike_ns = answer.impact.state.stamp_ns or answer.state.stamp_ns
         if not strike_ns:
             return
-        oldest_ns = now_ns - to_ns(KEPT_S)  # one before that is of a body whose states do not come
+        oldest_ns = now_ns - to_ns(KEPT_S)  # earlier ones are of a body without states
         awaited = self._awaited.get(answer.body_name, [])
         begun = [each for each in awaited if oldest_ns <= each[0] < now_ns]
         self._awaited[answer.body_name] = [*begun, (strike_ns, answer)]

@@ -38,7 +38,7 @@ if TYPE_CHECKING:
 
 
 FORCE_LENGTH: Final = 0.6
-"""Length of the longest force arrow, relative to the body's size. Labels say how much force it stands for."""
+"""Length of the longest force arrow, relative to the body's size. Labels contain the forces."""
 
 MAX_MODES: Final = 6  # largest number of modes that are drawn. Further modes are only listed in words.
 LETTERS: Final = "letters"  # the labels of the contacts. Only those of the newest answer are in view.

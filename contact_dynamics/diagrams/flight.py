@@ -8,6 +8,7 @@ of four cases. A white one is not to be relied on.
 
 from __future__ import annotations
 
+from dataclasses import fields, replace
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
@@ -125,14 +126,5 @@ def outside(
         deep = np.flatnonzero(gaps < min(float(gaps[0]), 0.0) - DEEP * shape.size)
         if len(deep) > 0 and deep[0] < count:
             count, name = int(deep[0]), surface.name
-    return trajectory if not name else _first(trajectory, count), name
-
-
-def _first(trajectory: Trajectory, count: int) -> Trajectory:
-    return Trajectory(
-        seconds=trajectory.seconds[:count],
-        p_WB_W=trajectory.p_WB_W[:count],
-        q_WB=trajectory.q_WB[:count],
-        v_WB_W=trajectory.v_WB_W[:count],
-        w_WB_W=trajectory.w_WB_W[:count],
-    )
+    first = {each.name: getattr(trajectory, each.name)[:count] for each in fields(trajectory)}
+    return replace(trajectory, **first), name

@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from contact_dynamics.validation import FloatArray
 
 ARROW_LENGTH: Final = 1.1
-"""Length of the longest arrow of a kind, relative to the body's size. Labels say how much it stands for."""
+"""Length of the longest arrow of a kind, relative to the body's size. Labels contain the amounts."""
 
 ARROW_WIDTH: Final = 0.016  # relative to the size of the body
 LABEL_REACH: Final = 1.15  # how far out the label of a velocity is, relative to its arrow
@@ -124,7 +124,7 @@ def _velocities(answer: ImpactAnswer) -> tuple[FloatArray, FloatArray]:
 
 
 def _velocity_marks(answer: ImpactAnswer, size: float, *, measured: str = "") -> tuple[Arrows, Labels]:
-    """Return the velocities before and after an impact, with labels that may tell what was measured after it.
+    """Return the velocities before and after an impact, with labels that may contain the measured one.
 
     The first arrow of a body ends at its centre of mass, and the second begins there.
     """

@@ -43,7 +43,7 @@ CONE_LENGTH: Final = 0.2  # length of a friction cone's edges, relative to the b
 ARROW_LENGTH: Final = 0.4  # length of the longest arrow of a kind, relative to the body's size
 LABEL_OFFSET: Final = 0.11  # distance of a label from its contact, relative to the body's size
 _COVERED: Final = 0.2  # labels nearer than this would cover each other, relative to the body's size
-_ALIGNED: Final = 0.95  # length of the mean of unit normals that are taken for those of one surface
+_ALIGNED: Final = 0.95  # smallest length of the mean of unit normals of one surface
 _SHOWN: Final = 1e-6  # arrows shorter than this are left out, relative to the longest
 _AROUND: Final = 0.24  # room around body and contacts, relative to the body's size
 
@@ -202,8 +202,8 @@ class ModesSideBySide:
     """The consistent modes of a planar body. There is one picture without a mode if none is consistent."""
 
     contacts: tuple[PlanarContact, ...]  # the contacts
-    modes: tuple[PlanarMode, ...]  # the modes. There may be none.
-    titles: list[str]  # what is said of each picture
+    modes: tuple[PlanarMode, ...]  # may be empty
+    titles: list[str]  # title of each picture
     # Outline of the body, a closed strip, (k, 2), m from the centre of mass, which may be empty.
     outline: FloatArray
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What stands still or keeps its form: surfaces as patches of ground, and the shapes of the bodies."""
+"""The surfaces, as patches of ground, and the shapes of the bodies."""
 
 from __future__ import annotations
 

@@ -46,7 +46,7 @@ _CURVE_POINTS: Final = 3000
 class WrenchChart(ABC):
     """A flat picture of wrenches (f_x, f_y, moment), N and N m."""
 
-    parts: ClassVar[int] = 2  # how many parts stand side by side
+    parts: ClassVar[int] = 2  # number of parts side by side
     resolution: int = 400  # points on a side of each part
 
     @abstractmethod

@@ -126,9 +126,9 @@ def _cells(evaluation: Evaluation, sources: Sequence[Source], config: Path | Non
 def _rows(
     rows: Sequence[Comparison], number: int | None, known: Body, measured: Body
 ) -> tuple[Comparison, ...]:
-    """Return the answers about an event, with predictions of the measured body's centre of mass.
+    """Return the predictions of an event, as those of the measured body's centre of mass.
 
-    They were made for the centre of mass of the body that whoever asked knew.
+    They were made for the centre of mass of the body in the predicting configuration.
     """
     return tuple(
         replace(row, predicted=None if row.predicted is None else _of_center(row.predicted, known, measured))

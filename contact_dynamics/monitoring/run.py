@@ -76,7 +76,7 @@ def _monitor(given: argparse.Namespace) -> int:
 
 
 def monitored(monitor: Monitor, recording: Recording) -> Iterator[MonitoredEvent]:
-    """Yield the events of a recording, whose states are added in the order in which they came."""
+    """Yield the events of a recording, whose states are added in the order of their arrival."""
     states = [
         (arrival_ns, motion.body.name, state)
         for motion in recording.motions

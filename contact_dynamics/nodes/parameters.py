@@ -49,8 +49,7 @@ class ServerParameters:
     world: World
     carried: tuple[CarriedSurface, ...]  # the surfaces that move with a body
     sources: tuple[BodySources, ...]  # the sources of states, for each body
-    # The topic of the transforms between frames that stand still, or None
-    static_topic: ConfiguredTopic | None
+    static_topic: ConfiguredTopic | None  # of static transforms
     world_frame: str
     state_timeout: float  # s, largest age of the latest state
     state_history: float  # s, length of the history of states

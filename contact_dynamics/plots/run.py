@@ -23,8 +23,8 @@ if TYPE_CHECKING:
     from contact_dynamics.replay.events import Answered
     from contact_dynamics.world import World
 
-NOTHING_DRAWN: Final = 1  # this exit code says that the log has no answer with a diagram
-NO_LOG: Final = 2  # this exit code says that the log cannot be read, or a file cannot be written
+NOTHING_DRAWN: Final = 1  # exit code if the log has no answer with a diagram
+NO_LOG: Final = 2  # exit code if the log cannot be read, or a file cannot be written
 _UNUSUAL: Final = re.compile(r"[^A-Za-z0-9._-]+")
 
 

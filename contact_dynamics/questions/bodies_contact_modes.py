@@ -91,7 +91,7 @@ class BodiesContactModeQuestion(Question["BodiesContactModeAnswer"]):
             gravity_W: ArrayLike | None = ...,
             velocity_tolerance: float | None = ...,
         ) -> None:
-            """Take whatever NumPy makes arrays of."""
+            """Accept everything that NumPy converts to arrays."""
 
     def __post_init__(self) -> None:
         """Check the lists and the numbers, and repeat what holds for all bodies."""

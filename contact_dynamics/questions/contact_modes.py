@@ -72,8 +72,7 @@ MAX_FRICTION_FACETS: Final = 32
 """A friction pyramid may have at most this many edges. With 32 it holds 99.5 % of the round cone."""
 
 MAX_UNCERTAIN_CONTACTS: Final = 16
-"""A question about uncertain contacts may have at most this many. It takes dozens of samples, each of which
-takes some 50 ms for so many."""
+"""Largest number of uncertain contacts in a question. It takes dozens of samples of some 50 ms each."""
 
 LEAST_PROBABILITY: Final = 0.01
 """Motions that are rarer by the noise of a state are left out of the probabilities."""
@@ -180,7 +179,7 @@ class ContactModeQuestion(Question["ContactModeAnswer"]):
             include_geometry_margins: bool = ...,
             include_probabilities: bool = ...,
         ) -> None:
-            """Take whatever NumPy makes arrays of."""
+            """Accept everything that NumPy converts to arrays."""
 
     def __post_init__(self) -> None:
         """Check the vectors, the numbers and the choice of the problem."""
@@ -338,7 +337,7 @@ def answer(question: ContactModeQuestion, context: Context | None = None) -> Con
 def _probabilities(
     question: ContactModeQuestion, case: ModeCase, noisy: NoisyState, context: Context
 ) -> tuple[ModeProbability, ...]:
-    """Return the modes that other measurements of the state would come to, the most probable first."""
+    """Return the modes of the states within the noise, with their probabilities, the most probable first."""
     alone = ContactModeQuestion(
         body=case.subject.body,
         contacts=case.contacts,

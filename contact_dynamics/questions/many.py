@@ -63,7 +63,7 @@ class ManyStates(Rows):
         def __init__(
             self, *, p_WB_W: ArrayLike, q_WB: ArrayLike, v_WB_W: ArrayLike, w_WB_W: ArrayLike
         ) -> None:
-            """Take whatever NumPy makes arrays of."""
+            """Accept everything that NumPy converts to arrays."""
 
     def __post_init__(self) -> None:
         """Check the arrays."""
@@ -260,7 +260,7 @@ def answer_impacts(question: ManyImpactsQuestion, context: Context | None = None
 
 
 def _rows(field: str, value: ArrayLike, count: int, shape: tuple[int, ...] = ()) -> FloatArray:
-    """Return a row for each of so many states; a single one stands for all."""
+    """Return a row for each of ``count`` states; a single row applies to all."""
     rows = check_rows(field, value, shape)
     if len(rows) not in {1, count}:
         raise InvalidFieldError(field, f"{len(rows)} rows", f"{count}, or one for all")

@@ -35,7 +35,7 @@ if TYPE_CHECKING:
     from contact_dynamics.rigid_body.body import BodyState
 
 MAX_CANDIDATES: Final = 1000
-"""Most candidates in one question. In the plane so many take about a second, with four contacts."""
+"""Largest number of candidates in one question. In the plane, with four contacts, they take about 1 s."""
 
 _PLAIN: Final = ContactModeQuestion(body="")
 
@@ -84,7 +84,7 @@ class ManyContactModesQuestion(Question["ManyContactModesAnswer"]):
             torques_W: ArrayLike,
             contact_counts: Sequence[int] = (),
         ) -> None:
-            """Take whatever NumPy makes arrays of."""
+            """Accept everything that NumPy converts to arrays."""
 
     def __post_init__(self) -> None:
         """Check the arrays, and repeat what holds for all."""

@@ -72,7 +72,7 @@ class AtTimes(Record):
     if TYPE_CHECKING:
 
         def __init__(self, *, times: ArrayLike) -> None:
-            """Take whatever NumPy makes arrays of."""
+            """Accept everything that NumPy converts to arrays."""
 
     def __post_init__(self) -> None:
         """Check the times."""
@@ -188,7 +188,7 @@ class UntilPlane(AtRate):
             rate: float | None = ...,
             duration: float | None = ...,
         ) -> None:
-            """Take whatever NumPy makes arrays of."""
+            """Accept everything that NumPy converts to arrays."""
 
     def __post_init__(self) -> None:
         """Check all five."""

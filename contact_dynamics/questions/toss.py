@@ -235,7 +235,7 @@ def _without_noise(known: Context) -> tuple[str, ...]:
 
 
 def _path(went: Toss, rate: float) -> TossPath:
-    """Return a toss as it is told, with the motion at a rate, Hz."""
+    """Return a toss for the answer, with the motion at a rate, Hz."""
     count = went.seconds * rate
     if count > MAX_TIMES - 1:
         raise TooLargeError("rate", f"{count:.9g} samples until {went.seconds:.3g} s", f"at most {MAX_TIMES}")

@@ -111,7 +111,7 @@ class TumblingQuestion(Question["TumblingAnswer"]):
             include_covariance: bool = ...,
             curve_points: int = ...,
         ) -> None:
-            """Take whatever NumPy makes arrays of."""
+            """Accept everything that NumPy converts to arrays."""
 
     def __post_init__(self) -> None:
         """Check gravity and the number of points."""

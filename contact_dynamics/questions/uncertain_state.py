@@ -37,7 +37,7 @@ class UncertainState(Record):
     if TYPE_CHECKING:
 
         def __init__(self, *, state: BodyState, covariance: ArrayLike) -> None:
-            """Take whatever NumPy makes arrays of."""
+            """Accept everything that NumPy converts to arrays."""
 
     def __post_init__(self) -> None:
         """Check the covariance."""

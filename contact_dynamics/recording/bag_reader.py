@@ -159,7 +159,7 @@ class BagReader:
         found: list[tuple[int, int]] = []
         for path in self.paths:
             with warnings.catch_warnings():
-                warnings.simplefilter("ignore", DamagedLogWarning)  # told when the messages are read
+                warnings.simplefilter("ignore", DamagedLogWarning)  # reported when the messages are read
                 with self._opened(path) as file:
                     extent = file.extent()
             if extent is not None:

@@ -59,8 +59,7 @@ NO_TRAVEL: Final = 1e-3
 """m. A path that is shorter than this, seen from above, has no sides to choose between."""
 
 STRAIGHT: Final = 0.01
-"""Relative to the length of a path. A path that bulges by less counts as straight, and the eye looks at it
-from its right."""
+"""Largest bulge of a straight path, relative to its length. The eye looks at such a path from its right."""
 
 WINDOW_S: Final = 10.0  # s. How long trails stay in view, and how far back the curves go.
 WINDOW_STEPS: Final = 1000  # steps. The same on the timeline of events.
