@@ -263,13 +263,10 @@ def status_of(response: Any) -> str:
     return next((name for name, value in constants if name.isupper() and value == response.status), "UNKNOWN")
 
 
-LANDING: Final = "landing"
-IMPACT: Final = "impact"
-MODES: Final = "modes"
 QUESTIONS: Final[Mapping[str, Callable[..., Question[Answer]]]] = {
-    LANDING: partial(TumblingQuestion, sampling=UntilContact()),
-    IMPACT: ImpactQuestion,
-    MODES: ContactModeQuestion,
+    "landing": partial(TumblingQuestion, sampling=UntilContact()),
+    "impact": ImpactQuestion,
+    "modes": ContactModeQuestion,
 }
 """The requests about a body and a state."""
 
