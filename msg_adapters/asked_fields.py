@@ -23,10 +23,7 @@ from contact_dynamics.world import LONGEST_NAME, Body
 from msg_adapters.body_state import known_state_from_msg
 from msg_adapters.contacts import contacts_from_msg
 from msg_adapters.field_names import renamed
-from msg_adapters.geometry import (
-    mass_properties_from_msg,
-    vector_from_msg,
-)
+from msg_adapters.geometry import mass_properties_from_msg, vector_from_msg
 from msg_adapters.rejected_fields import STATE_OF_BODY, check_unread
 from msg_adapters.stamps import stamp_ns_from_msg
 

@@ -25,12 +25,7 @@ from contact_dynamics.rigid_body.published_frame import centers_of_mass, origins
 from contact_dynamics_interfaces.msg import BodyStates
 from contact_dynamics_interfaces.srv import PredictContactModeBatch, PredictImpactBatch, PredictTumblingBatch
 from msg_adapters import fields
-from msg_adapters.asked_fields import (
-    asked_body,
-    asked_gravity,
-    asked_member,
-    optional,
-)
+from msg_adapters.asked_fields import asked_body, asked_gravity, asked_member, optional
 from msg_adapters.contact_mode import asked_contact_modes
 from msg_adapters.contacts import flat
 from msg_adapters.field_names import renamed

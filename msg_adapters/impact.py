@@ -147,10 +147,7 @@ def _read_strikes(msg: ImpactMsg, _: str, frame: fields.Frame) -> tuple[Sequence
                 w_WB_W=twist[3:],
                 stamp_ns=ns_after(last_ns, seconds - msg.strike_times[-1]),
             )
-            for twist in (
-                rows(msg.strike_velocities_before, 6)[i],
-                rows(msg.strike_velocities_after, 6)[i],
-            )
+            for twist in (rows(msg.strike_velocities_before, 6)[i], rows(msg.strike_velocities_after, 6)[i])
         )
         strikes.append(
             SequenceStrike(

@@ -13,9 +13,7 @@ from typing import TYPE_CHECKING, Final, Generic, Protocol, TypeVar
 from geometry_msgs.msg import PoseStamped, TwistStamped
 
 from contact_dynamics.errors import FrameMismatchError, InvalidFieldError
-from contact_dynamics.rigid_body.published_frame import (
-    state_of_center_of_mass,
-)
+from contact_dynamics.rigid_body.published_frame import state_of_center_of_mass
 from contact_dynamics.rotations.one import rotation_matrix
 from contact_dynamics.validation import check_unit
 from msg_adapters.geometry import quaternion_from_msg, vector_from_msg

@@ -37,11 +37,7 @@ from contact_dynamics_interfaces.msg import Poinsot as PoinsotMsg
 from contact_dynamics_interfaces.msg import Trajectory as TrajectoryMsg
 from contact_dynamics_interfaces.srv import PredictTumbling
 from msg_adapters import fields
-from msg_adapters.asked_fields import (
-    asked_gravity,
-    asked_subject,
-    optional,
-)
+from msg_adapters.asked_fields import asked_gravity, asked_subject, optional
 from msg_adapters.contacts import flat, rows
 from msg_adapters.field_names import WRENCH_FIELDS, renamed
 from msg_adapters.geometry import pose_to_msg, vector_from_msg
@@ -101,10 +97,7 @@ def _drag(request: PredictTumbling.Request) -> Drag:
     if not any((linear, quadratic, linear_angular, quadratic_angular)):
         return NO_DRAG
     return Drag(
-        linear=linear,
-        quadratic=quadratic,
-        linear_angular=linear_angular,
-        quadratic_angular=quadratic_angular,
+        linear=linear, quadratic=quadratic, linear_angular=linear_angular, quadratic_angular=quadratic_angular
     )
 
 

@@ -154,11 +154,7 @@ def calibrate_observed(
 
 
 def _first_way(
-    model: Model,
-    data: Data,
-    free: Sequence[Free],
-    observed: Sequence[Observed],
-    covariances: FloatArray,
+    model: Model, data: Data, free: Sequence[Free], observed: Sequence[Observed], covariances: FloatArray
 ) -> tuple[Fitting, Estimation]:
     """Return the estimate from velocities, repeated if ratios of moments end far from their start."""
     ratios, start = model.configured[4:6], None

@@ -28,10 +28,7 @@ def write_plots(folder: Path, found: Calibration) -> list[Path]:
         raise NotSupportedError("--plots needs matplotlib: pip install '.[plot]'") from None
     folder.mkdir(parents=True, exist_ok=True)
     figure = Figure(figsize=(10.0, 4.2), layout="constrained")
-    parts = (
-        (slice(0, 3), "velocity after an impact, m/s"),
-        (slice(3, 6), "spin after an impact, rad/s"),
-    )
+    parts = ((slice(0, 3), "velocity after an impact, m/s"), (slice(3, 6), "spin after an impact, rad/s"))
     for column, (part, label) in enumerate(parts):
         axes = figure.add_subplot(1, 2, column + 1)
         left = np.sort(np.linalg.norm(found.residuals[:, part], axis=1))

@@ -53,9 +53,7 @@ def _calibrate(given: argparse.Namespace) -> int:
     return SOMETHING_OPEN if refused or found.problems or found.undetermined else 0
 
 
-def _motions(
-    given: argparse.Namespace,
-) -> tuple[list[MeasuredMotion], list[str], list[tuple[str, str]]]:
+def _motions(given: argparse.Namespace) -> tuple[list[MeasuredMotion], list[str], list[tuple[str, str]]]:
     """Return the motions of one body, the names of their recordings, and a list of unreadable ones."""
     sources, refused = find_sources(given.recordings)
     _check_config(given.config, sources)

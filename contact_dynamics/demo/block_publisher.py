@@ -67,9 +67,7 @@ class PushedBlock:
         self._is_over = self._is_over or block.x > MAX_PUSHED or abs(block.angle) > MAX_TIPPED
         self._force = 0.0 if self._is_over else max(0.0, self.rate * (seconds - BEGINS_S))
         return Load(
-            force_x=self._force,
-            force_z=-block.mass * _GRAVITY,
-            moment=(self.height - block.z) * self._force,
+            force_x=self._force, force_z=-block.mass * _GRAVITY, moment=(self.height - block.z) * self._force
         )
 
     def measured(self) -> WrenchStamped:

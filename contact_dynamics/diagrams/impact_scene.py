@@ -101,10 +101,7 @@ def measured_marks(
     paint = Paint(color, paper.BLACK)
     origin_W = answer.state.p_WB_W[None]
     _, labels = _velocity_marks(answer, size, measured=f"measured after {np.linalg.norm(v_WB_W):.3g} m/s")
-    return [
-        Arrows("measured_velocity", paint, origin_W, vector_W[None], radius=ARROW_WIDTH * size),
-        labels,
-    ]
+    return [Arrows("measured_velocity", paint, origin_W, vector_W[None], radius=ARROW_WIDTH * size), labels]
 
 
 def drawn_scale(vectors: FloatArray, size: float) -> float:

@@ -303,12 +303,7 @@ def _round_cone(friction: float, height: float) -> list[FloatArray]:
 
 
 def _contact_motion(
-    body: MassProperties,
-    answer: ImpactAnswer,
-    contact: int,
-    *,
-    other: MassProperties | None,
-    before: int,
+    body: MassProperties, answer: ImpactAnswer, contact: int, *, other: MassProperties | None, before: int
 ) -> tuple[FloatArray, FloatArray]:
     """Return the velocity, (3,), m/s, of a contact and its response to impulses, (3, 3), 1/kg, world axes.
 

@@ -112,10 +112,7 @@ def event_tree(told: TossDistribution) -> Diagram:
     room = 0.25 * (end - begin)
     return Diagram(
         marks=marks,
-        axes=(
-            Axis("time after the state, s", begin - room, end + room),
-            Axis("", 0.3 - rows, 1.2, ()),
-        ),
+        axes=(Axis("time after the state, s", begin - room, end + room), Axis("", 0.3 - rows, 1.2, ())),
         title=f"next events of {told.samples} samples",
         is_equal=False,
     )

@@ -110,11 +110,7 @@ class ParameterSource:
         return found or None
 
     def filled(
-        self,
-        default: T,
-        names: Mapping[str, str] | None = None,
-        /,
-        **fields: tuple[str, tuple[float, float]],
+        self, default: T, names: Mapping[str, str] | None = None, /, **fields: tuple[str, tuple[float, float]]
     ) -> T:
         """Return a dataclass whose fields are parameters, with the defaults in ``default``.
 

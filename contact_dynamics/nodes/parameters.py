@@ -146,8 +146,7 @@ def _read_parameters(
         carried=tuple(each for each in surfaces if isinstance(each, CarriedSurface)),
         sources=tuple(sources for _, sources in bodies),
         static_topic=source.topic(
-            "tf_static_topic",
-            "Topic of tf2_msgs/TFMessage with static transforms. Not used if empty.",
+            "tf_static_topic", "Topic of tf2_msgs/TFMessage with static transforms. Not used if empty."
         ),
         world_frame=source.name("world_frame", "world", "Frame of states and responses."),
         state_timeout=source.value("state_timeout", 0.5, "Largest age of the latest state, s.", (1e-3, 1e6)),

@@ -17,12 +17,7 @@ from contact_dynamics.nodes.run_record import CHANGE_TYPE, CHANGES
 from contact_dynamics.nodes.server_core import ServerCore
 from contact_dynamics.nodes.service_front import EVENT_QOS
 from contact_dynamics.nodes.situations import Part, Present, Situation
-from contact_dynamics.nodes.state_subscriptions import (
-    BodyWatch,
-    OfferedQosWatch,
-    StateTopic,
-    present_ns,
-)
+from contact_dynamics.nodes.state_subscriptions import BodyWatch, OfferedQosWatch, StateTopic, present_ns
 from contact_dynamics.nodes.topic_faults import TopicFaults
 from contact_dynamics.questions.twist_axes import TwistAxes
 

@@ -71,10 +71,7 @@ class ServerCore:
         if changed:
             self._find_sources()
         self.context = replace(
-            self.context,
-            world=parameters.world,
-            defaults=parameters.defaults,
-            carried=parameters.carried,
+            self.context, world=parameters.world, defaults=parameters.defaults, carried=parameters.carried
         )
 
     def expect(self, publishers: Mapping[str, int] | None = None) -> None:

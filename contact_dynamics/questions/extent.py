@@ -52,11 +52,7 @@ def check_extent(body: MassProperties, state: BodyState) -> None:
 
     The limits are `MAX_IN_CONTACT`, and `MAX_INERTIA` for a mass or moment.
     """
-    for name, vector in (
-        ("p_WB_W", state.p_WB_W),
-        ("v_WB_W", state.v_WB_W),
-        ("w_WB_W", state.w_WB_W),
-    ):
+    for name, vector in (("p_WB_W", state.p_WB_W), ("v_WB_W", state.v_WB_W), ("w_WB_W", state.w_WB_W)):
         check_vector(name, vector)
     check_mass(body)
 

@@ -145,10 +145,7 @@ def settled_in_plane(
 
     if len(problem.contacts) == 1:
         impact = planar_impact(
-            problem.body,
-            problem.velocity,
-            problem.contacts[0],
-            velocity_tolerance=case.velocity_tolerance,
+            problem.body, problem.velocity, problem.contacts[0], velocity_tolerance=case.velocity_tolerance
         )
         velocity = impact.velocity
         resolved = of_one_contact(lifted_impact(impact, problem, state), [body], [state])

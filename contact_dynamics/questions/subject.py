@@ -251,9 +251,7 @@ def covariance_of(subject: Subject) -> FloatArray:
     """Return the covariance of a subject's state, (12, 12), or raise `InvalidFieldError` if it has none."""
     if subject.covariance is None:
         raise InvalidFieldError(
-            "state.covariance",
-            "none",
-            "144 numbers of an explicit or a published state, or a fit_window",
+            "state.covariance", "none", "144 numbers of an explicit or a published state, or a fit_window"
         )
     return subject.covariance
 

@@ -18,13 +18,7 @@ from contact_dynamics.questions.services import Answer, Question
 from contact_dynamics.questions.subject import NEWEST, FitQuality, StateSource, subject_of
 from contact_dynamics.records import Record
 from contact_dynamics.rigid_body.body import BodyState
-from contact_dynamics.toss import (
-    Toss,
-    TossDistribution,
-    TossUncertainty,
-    sampled_toss,
-    toss,
-)
+from contact_dynamics.toss import Toss, TossDistribution, TossUncertainty, sampled_toss, toss
 from contact_dynamics.toss.result import TossOutcome
 from contact_dynamics.toss.sampled import MAX_SAMPLES, MAX_STRIKES
 from contact_dynamics.toss.uncertainty import EXACT, check_factors

@@ -103,10 +103,7 @@ class BagFile:
                     topic=name,
                     message_encoding="cdr",
                     schema_id=self._schemas[type_name],
-                    metadata={
-                        OFFERED_QOS: json.dumps(qos_maps(qos)),
-                        TYPE_HASH: definition.type_hash,
-                    },
+                    metadata={OFFERED_QOS: json.dumps(qos_maps(qos)), TYPE_HASH: definition.type_hash},
                 )
             self._channels[name] = self._defined[key]
         self._counts.setdefault(name, 0)

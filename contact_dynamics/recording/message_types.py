@@ -112,9 +112,7 @@ def message_types(type_name: str, definition: str) -> dict[str, type[Message]]:
         for each in made.FIELDS:
             if each.type_name not in {*types, *PRIMITIVES, "string"}:
                 raise InvalidFieldError(
-                    "definition",
-                    f"{full_name}.{each.name} of the type {each.type_name}",
-                    "types it defines",
+                    "definition", f"{full_name}.{each.name} of the type {each.type_name}", "types it defines"
                 )
     return types
 

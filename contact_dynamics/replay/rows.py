@@ -362,13 +362,7 @@ class Measuring:
     """Collects the states of a body until the predicted outcome has been measured."""
 
     def __init__(
-        self,
-        *,
-        body: Body,
-        predicted: BodyState,
-        newest: BodyState,
-        gravity_W: FloatArray,
-        is_impact: bool,
+        self, *, body: Body, predicted: BodyState, newest: BodyState, gravity_W: FloatArray, is_impact: bool
     ) -> None:
         """Begin with a body's newest state; collect states until the stamp of the predicted one has passed.
 

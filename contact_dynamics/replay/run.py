@@ -241,9 +241,7 @@ def _span(path: Path, given: argparse.Namespace) -> Span:
             end = "its end" if given.end is None else f"{given.end:g} s"
             lasts = f"{to_seconds(end_ns - start_ns):.9g} s (log_time {start_ns} to {end_ns} ns)"
             raise InvalidFieldError(
-                "--start and --end",
-                f"{given.start:g} s to {end}",
-                f"a part of {path}, which lasts {lasts}",
+                "--start and --end", f"{given.start:g} s to {end}", f"a part of {path}, which lasts {lasts}"
             )
     return span
 

@@ -301,10 +301,7 @@ def _ask(call: ServiceCall, server: ServerAgain, found: Verification) -> None:
     asked_ns = call.request_event.publish_time_ns
     recomputed = server.answer(call.service_type, request, make_response, asked_ns=asked_ns)
     note_difference(
-        found,
-        call.service,
-        differences(logged, recomputed),
-        asked_ns=call.request_event.log_time_ns,
+        found, call.service, differences(logged, recomputed), asked_ns=call.request_event.log_time_ns
     )
 
 

@@ -274,10 +274,7 @@ def draw_poinsot(
     recording.log(path, rr.Transform3D(mat3x3=poinsot_axes(picture) / unit))
     draw_marks(recording, poinsot_marks(picture, curves), path)
     style = rr.Arrows3D.from_fields(
-        colors=palette.AFTER_IMPACT,
-        radii=ARROW_RADIUS * unit,
-        labels=["angular velocity"],
-        show_labels=False,
+        colors=palette.AFTER_IMPACT, radii=ARROW_RADIUS * unit, labels=["angular velocity"], show_labels=False
     )
     recording.log(f"{path}/angular_velocity", style)
 

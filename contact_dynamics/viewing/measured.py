@@ -100,10 +100,7 @@ def style_series(
     error = rr.SeriesLines(colors=color, names=f"{body_name} off its prediction", widths=2.0)
     recording.log(entity(ERROR, body_name), error, static=True)
     for quantity in (HEIGHT, SPEED, *OF_ONE_BODY):
-        for kind, own, width in (
-            ("measured", color, 4.0),
-            ("predicted", palette.PREDICTED, 1.0),
-        ):
+        for kind, own, width in (("measured", color, 4.0), ("predicted", palette.PREDICTED, 1.0)):
             path = entity(quantity, body_name, kind)
             series = rr.SeriesLines(colors=own, names=f"{body_name} {kind}", widths=width)
             recording.log(path, series, static=True)
@@ -200,9 +197,7 @@ def draw_prediction_at(
         predicted_W = [np.interp(seconds[inside], trajectory.seconds, each) for each in trajectory.p_WB_W.T]
         apart = np.linalg.norm(measured_W - np.column_stack(predicted_W), axis=1)
         recording.send_columns(
-            entity(ERROR, body_name),
-            indexes=[there_stamps],
-            columns=scalar_columns(apart),
+            entity(ERROR, body_name), indexes=[there_stamps], columns=scalar_columns(apart)
         )
     past = np.array(stamps_ns, dtype=np.int64)[seconds > trajectory.seconds[-1]]
     if len(past) > 0:
