@@ -330,13 +330,10 @@ _PLANS: Final[dict[type, _Plan]] = {}
 
 def _plan(message_type: type) -> _Plan:
     if message_type not in _PLANS:
-        _PLANS[message_type] = _planned(message_type())
+        empty, others = message_type(), (bool, int, float, str, bytes)
+        found = [leaf for name in field_names(empty) for leaf in leaves_of(name, getattr(empty, name))]
+        numbers = tuple(leaf.path for leaf in found if isinstance(leaf.default, float))
+        lists = tuple(leaf.path for leaf in found if not isinstance(leaf.default, others))
+        read_numbers, read_lists = values_of(message_type, numbers), values_of(message_type, lists)
+        _PLANS[message_type] = _Plan(numbers, read_numbers, lists, read_lists)
     return _PLANS[message_type]
-
-
-def _planned(message: object) -> _Plan:
-    found = [leaf for name in field_names(message) for leaf in leaves_of(name, getattr(message, name))]
-    others = (bool, int, float, str, bytes)
-    numbers = tuple(leaf.path for leaf in found if isinstance(leaf.default, float))
-    lists = tuple(leaf.path for leaf in found if not isinstance(leaf.default, others))
-    return _Plan(numbers, values_of(type(message), numbers), lists, values_of(type(message), lists))

@@ -86,7 +86,10 @@ def write_picture(
     recording.send_blueprint(places.blueprint("Events, measured and predicted", "How far off"))
     for number, cell in enumerate(cells):
         _draw(recording, number, cell, places)
-    table = rr.TextDocument(_table(cells), media_type=rr.MediaType.MARKDOWN)
+    lines = ["| | event | horizon | error |", "| --- | --- | --- | --- |"]
+    for number, cell in enumerate(cells):
+        lines += [f"| {number} | {cell.name} | {answer} |" for answer in _answers(cell)]
+    table = rr.TextDocument("\n".join(lines), media_type=rr.MediaType.MARKDOWN)
     recording.log(TABLE, table, static=True)
     recording.disconnect()
     return len(cells)
@@ -196,15 +199,8 @@ def _draw_velocities(recording: rr.RecordingStream, path: str, cell: _Cell, size
         recording.log(entity(path, "velocity after", name), arrow, static=True)
 
 
-def _table(cells: Sequence[_Cell]) -> str:
-    """Return a row for each event, with the errors of its shortest horizon, in Markdown."""
-    lines = ["| | event | horizon | error |", "| --- | --- | --- | --- |"]
-    for number, cell in enumerate(cells):
-        lines += [f"| {number} | {cell.name} | {answer} |" for answer in _answers(cell)]
-    return "\n".join(lines)
-
-
 def _answers(cell: _Cell) -> Iterator[str]:
+    """Yield the horizon and the errors of an event and its impact, at the shortest horizon, in Markdown."""
     for rows, event in ((cell.rows, cell.event), (cell.impact_rows, cell.impact)):
         if event is None or not rows:
             continue

@@ -170,12 +170,10 @@ class Serving(Receiving):
         return {Part.ANSWERS: {**self._answer_times.values(), "queued requests": str(waiting)}}
 
     def _present(self) -> list[Present]:
-        return [*self._look_at_names(), *self._answer_times.look(), *self._look_at_workers()]
-
-    def _look_at_workers(self) -> list[Present]:
-        if self.is_ready or self._workers is None:
-            return []
-        return [Situation.WORKERS.present(ready=self._workers.ready, count=self._workers.count)]
+        present = [*self._look_at_names(), *self._answer_times.look()]
+        if self._workers is not None and not self.is_ready:
+            present.append(Situation.WORKERS.present(ready=self._workers.ready, count=self._workers.count))
+        return present
 
     def _look_at_names(self) -> list[Present]:
         full_names = [(namespace, name) for name, namespace in self._node.get_node_names_and_namespaces()]
@@ -200,11 +198,8 @@ class Serving(Receiving):
         return front
 
     def _note_answer(self, response: Response) -> None:
+        """Count a response, and publish its trajectory for RViz if there is a subscriber."""
         self._answer_times.note(response, is_active=self.is_active)
-        self._publish_path(response)
-
-    def _publish_path(self, response: Response) -> None:
-        """Publish the latest trajectory for RViz, if there is a subscriber."""
         trajectory = getattr(response, "trajectory", None)
         is_path = trajectory is not None and response.status == response.OK
         if is_path and self._path.get_subscription_count() > 0:

@@ -323,9 +323,7 @@ class AskedEvents(Events):
         topics = self._server.topics
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", DamagedLogWarning)  # reported by `damage`
-            for message in self._reader.messages(
-                topics, start_ns=self._span.start_ns, end_ns=self._span.end_ns
-            ):
+            for message in self._reader.messages(topics, **self._span._asdict()):
                 for body_name, state in self._server.receive(message, is_live=False):
                     yield StateCame(body_name=body_name, state=state)
                     if self._is_due(body_name, state.stamp_ns):

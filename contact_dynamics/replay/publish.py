@@ -294,9 +294,7 @@ class _LogPublisher:
         if self._asks:
             log, again = BagReader(self._path), BagReader(self._path)
             return in_order(log, again, self._topics, span=self._span)
-        return BagReader(self._path).messages(
-            self._topics, start_ns=self._span.start_ns, end_ns=self._span.end_ns
-        )
+        return BagReader(self._path).messages(self._topics, **self._span._asdict())
 
     def _publish(self, message: LoggedMessage, pacing: Pacing) -> None:
         if message.topic not in self._publishers:

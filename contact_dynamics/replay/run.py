@@ -235,7 +235,7 @@ def _span(path: Path, given: argparse.Namespace) -> Span:
             span = span._replace(start_ns=ns_after(start_ns, given.start))
         if given.end is not None:
             span = span._replace(end_ns=ns_after(start_ns, given.end))
-        if next(log.messages(start_ns=span.start_ns, end_ns=span.end_ns), None) is None:
+        if next(log.messages(**span._asdict()), None) is None:
             # A log that was cut short has no index, so its end is unknown.
             end_ns = max((message.log_time_ns for message in log.messages()), default=start_ns)
             end = "its end" if given.end is None else f"{given.end:g} s"

@@ -36,9 +36,9 @@ def in_order(
 
     The same log is opened twice: ``calls_from`` for the calls, and ``states_from`` for the messages.
     """
-    states = states_from.messages(topics, start_ns=span.start_ns, end_ns=span.end_ns)
+    states = states_from.messages(topics, **span._asdict())
     state = next(states, None)
-    messages = calls_from.messages(start_ns=span.start_ns, end_ns=span.end_ns)
+    messages = calls_from.messages(**span._asdict())
     for call in service_calls(message for message in messages if is_event_of_ours(message)):
         if call.request_event is not None:
             while state is not None and state.log_time_ns <= call.request_event.log_time_ns:
