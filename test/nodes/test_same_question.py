@@ -7,248 +7,100 @@ right is shown where it is computed.
 
 from __future__ import annotations
 
-import math
 import re
 from importlib import import_module
 from typing import Any, TypeAlias
 
 import numpy as np
 import pytest
+import yaml
 from nav_msgs.msg import Path as RosPath
 
 from contact_dynamics.nodes.parameter_file import ParameterFile
 from contact_dynamics.nodes.parameters import read_server_parameters
 from contact_dynamics.questions import Context, ask
 from contact_dynamics.questions.services import SERVICES
-from contact_dynamics_interfaces.srv import (
-    PredictBodiesContactMode,
-    PredictContactMode,
-    PredictContactModeBatch,
-    PredictImpact,
-    PredictImpactBatch,
-    PredictToss,
-    PredictTumbling,
-    PredictTumblingBatch,
-)
+from contact_dynamics_interfaces import srv
+from contact_dynamics_interfaces.srv import PredictTumbling
 from running_server import ROOT, Client
 
 Fields: TypeAlias = "dict[str, Any]"
 
 PARAMETERS = read_server_parameters(ParameterFile(ROOT / "config" / "server.yaml"))
 CONTEXT = Context(world=PARAMETERS.world, defaults=PARAMETERS.defaults)
-ROD: Fields = {"inertia": {"m": 1.5, "com": {"x": 0.02, "y": -0.01}, "ixx": 0.3, "iyy": 0.4, "izz": 0.5}}
-TOSSED: Fields = {
-    "header": {"stamp": {"sec": 12, "nanosec": 345_678_901}},
-    "pose": {
-        "position": {"x": 0.1, "y": -0.2, "z": 1.0},
-        "orientation": {"x": 0.5, "y": -0.5, "z": 0.5, "w": 0.5},
-    },
-    "linear_velocity": {"x": 1.0, "y": 0.3, "z": -0.5},
-    "angular_velocity": {"x": 1.0, "y": 6.0, "z": 2.0},
-}
-UNCERTAIN = {**TOSSED, "covariance": np.diag(np.repeat([1e-6, 1e-5, 1e-4, 1e-3], 3)).ravel().tolist()}
-
-
-def lying(z: float, **fields: Any) -> Fields:
-    return {"pose": {"position": {"z": z}}, **fields}
-
-
-TILTED: Fields = {
-    "pose": {"position": {"z": 0.06}, "orientation": {"y": math.sin(0.17), "w": math.cos(0.17)}}
-}
-LEFT: Fields = {
-    "positions": [-0.1, 0.0, 0.5],
-    "normals": [0.0, 0.0, 1.0],
-    "frictions": [0.5],
-    "restitutions": [0.2],
-    "surface_names": ["left"],
-}
-RIGHT: Fields = {**LEFT, "positions": [0.3, 0.1, 0.5], "frictions": [0.1], "restitutions": [0.8]}
-FEET: Fields = {name: LEFT[name] + RIGHT[name] for name in LEFT}
-MANY: Fields = {
-    "positions": [0.0, 0.0, 1.0, 0.5, 0.0, 1.0],
-    "orientations": [0.0, 0.0, 0.0, 1.0] * 2,
-    "linear_velocities": [0.3, 0.0, -1.0, 0.0, 0.0, 2.0],
-    "angular_velocities": [0.0, 3.0, 0.0] * 2,
-}
-BRICK: Fields = {"body_name": "brick"}
-PUSHED: Fields = {**BRICK, "state_source": 1, "state": lying(0.025)}
-FLIES: Fields = {"state_source": 1, "state": TOSSED}
+*_, TYPED = yaml.safe_load("""
+- &rod {inertia: {m: 1.5, com: {x: 0.02, y: -0.01}, ixx: 0.3, iyy: 0.4, izz: 0.5}}
+- &brick {body_name: brick}
+- &tossed
+  header: {stamp: {sec: 12, nanosec: 345678901}}
+  pose: {position: {x: 0.1, y: -0.2, z: 1.0}, orientation: {x: 0.5, y: -0.5, z: 0.5, w: 0.5}}
+  linear_velocity: {x: 1.0, y: 0.3, z: -0.5}
+  angular_velocity: {x: 1.0, y: 6.0, z: 2.0}
+- &flies {state_source: 1, state: *tossed}
+- &lying {pose: {position: {z: 0.025}}}
+- &pushed {<<: *brick, state_source: 1, state: *lying}
+- &left {positions: [-0.1, 0.0, 0.5], normals: [0.0, 0.0, 1.0], frictions: [0.5], restitutions: [0.2],
+    surface_names: [left]}
+- &right {<<: *left, positions: [0.3, 0.1, 0.5], frictions: [0.1], restitutions: [0.8]}
+- &feet {positions: [-0.1, 0.0, 0.5, 0.3, 0.1, 0.5], normals: [0.0, 0.0, 1.0, 0.0, 0.0, 1.0],
+    frictions: [0.5, 0.1], restitutions: [0.2, 0.8], surface_names: [left, left]}
+- &on_feet {contact_source: 1, contacts: *feet}
+- &on_right {contact_source: 1, contacts: *right}
+- &many
+  positions: [0.0, 0.0, 1.0, 0.5, 0.0, 1.0]
+  orientations: [0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0]
+  linear_velocities: [0.3, 0.0, -1.0, 0.0, 0.0, 2.0]
+  angular_velocities: [0.0, 3.0, 0.0, 0.0, 3.0, 0.0]
+- until contact: [PredictTumbling, {<<: [*brick, *flies], sampling: 3}]
+  under forces, uncertain: [PredictTumbling, {<<: [*rod, *flies], sampling: 2, rate: 20.0, duration: 0.5,
+    applied_wrench: {force: {x: 0.5}, torque: {z: 0.25}}, wrench_in_body_axes: true, linear_drag: 0.1,
+    include_covariance: true}]
+  until a plane, with curves: [PredictTumbling, {<<: [*rod, *flies], sampling: 4, plane_point: {z: 0.2},
+    plane_normal: {z: 1.0}, body_point: {x: 0.1}, curve_points: 7}]
+  at stamps, without weight: [PredictTumbling, {<<: [*rod, *flies], sampling: 1, stamps_ns: [12000000000],
+    gravity: 1}]
+  a landing: [PredictImpact, {<<: [*brick, *flies]}]
+  orders: [PredictImpact, {<<: [*rod, *flies, *on_feet], include_orders: true}]
+  in time: [PredictImpact, {<<: *brick, state_source: 1, state: {pose: {position: {z: 0.06},
+    orientation: {y: 0.16918234906699603, w: 0.9855847669095608}}}, several_contacts_law: 2,
+    strike_window: 0.1, hold_step: 0.001}]
+  at once: [PredictImpact, {<<: [*brick, *flies], restitution_law: 1, several_contacts_law: 1}]
+  in a plane: [PredictImpact, {<<: *rod, state_source: 1, state: {pose: {position: {z: 0.8}},
+    linear_velocity: {x: 1.0, z: -2.0}, angular_velocity: {y: 2.0}}, contact_source: 1,
+    contacts: {<<: *left, positions: [-0.1, -0.01, 0.5]}, problem: 1, plane_normal: {y: -1.0},
+    out_of_plane_tolerance: 0.001}]
+  two bodies: [PredictImpact, {<<: [*rod, *flies, *on_right], other_body_name: brick, other_state: [*lying]}]
+  probable outcomes: [PredictImpact, {<<: [*rod, *flies, *on_right], include_covariance: true}]
+  margins, wrenches, statics: [PredictContactMode, {<<: *pushed, applied_wrench: {force: {x: 0.75}},
+    include_margins: true, include_wrenches: true, include_statics: true}]
+  in space: [PredictContactMode, {<<: *pushed, applied_wrench: {force: {x: 1.0, y: 1.0}},
+    include_margins: true, include_wrenches: true, friction_facets: 4}]
+  on a cart that brakes: [PredictContactMode, {<<: *pushed, contact_source: 1, contacts: {<<: *feet,
+    surface_velocities: [2.0, 0.0, 0.0, 2.0, 0.0, 0.0],
+    surface_accelerations: [-9.0, 0.0, 0.0, -9.0, 0.0, 0.0]}, problem: 2}]
+  settled by an impact: [PredictContactMode, {<<: [*rod, *flies, *on_feet], problem: 2, include_impact: true}]
+  uncertain contacts: [PredictContactMode, {<<: [*rod, *on_right], state_source: 1,
+    state: {pose: {position: {z: 0.8}}}, problem: 2, uncertainty_frictions: [0.1],
+    include_geometry_margins: true}]
+  a toss: [PredictToss, {<<: [*brick, *flies], samples: 5, seed: 3, max_alternatives: 1}]
+  many impacts: [PredictImpactBatch, {<<: *brick, states: *many, contact_normals: [0.0, 0.0, 1.0],
+    contact_positions: [0.05, 0.0, 0.98, 0.5, 0.0, 0.98], frictions: [0.3], restitutions: [0.5]}]
+  many tumblings: [PredictTumblingBatch, {<<: *brick, states: *many, times: [0.25, 0.5]}]
+  many contact modes: [PredictContactModeBatch, {<<: *pushed, include_margins: true,
+    forces: [0.0, 0.0, 0.0, 0.3, 0.0, 0.0, 2.0, 0.0, 0.0]}]
+  contact modes of bodies: [PredictBodiesContactMode, {state_source: 1, states: [
+    {pose: {position: {z: 0.06}}, header: {stamp: {sec: 3}}, body_name: rod}, {<<: *lying, body_name: brick}],
+    inertias: [{m: 1.5, com: {x: 0.02, y: -0.01}, ixx: 0.3, iyy: 0.4, izz: 0.5}, {}], contacts: {
+    positions: [0.05, 0.0, 0.0, -0.05, 0.03, 0.0, -0.05, -0.03, 0.0, 0.01, 0.0, 0.05],
+    normals: [0.0, 0.0, 1.0, 0.0, 0.0, 1.0, 0.0, 0.0, 1.0, 0.0, 0.0, 1.0], frictions: [0.5, 0.4, 0.3, 0.2]},
+    contact_bodies: [1, 1, 1, 0], other_bodies: [-1, -1, -1, 1],
+    applied_wrenches: [{force: {x: 4.0}}, {torque: {z: 0.01}}], velocity_tolerance: 0.000001}]
+""")
+for uncertain in ("under forces, uncertain", "probable outcomes", "a toss"):
+    covariance = np.diag(np.repeat([1e-6, 1e-5, 1e-4, 1e-3], 3)).ravel().tolist()
+    TYPED[uncertain][1]["state"] = TYPED[uncertain][1]["state"] | {"covariance": covariance}
 REQUESTS: dict[str, tuple[Any, Fields]] = {
-    "until contact": (PredictTumbling, {**BRICK, **FLIES, "sampling": 3}),
-    "under forces, uncertain": (
-        PredictTumbling,
-        {
-            **ROD,
-            "state_source": 1,
-            "state": UNCERTAIN,
-            "sampling": 2,
-            "rate": 20.0,
-            "duration": 0.5,
-            "applied_wrench": {"force": {"x": 0.5}, "torque": {"z": 0.25}},
-            "wrench_in_body_axes": True,
-            "linear_drag": 0.1,
-            "include_covariance": True,
-        },
-    ),
-    "until a plane, with curves": (
-        PredictTumbling,
-        {
-            **ROD,
-            **FLIES,
-            "sampling": 4,
-            "plane_point": {"z": 0.2},
-            "plane_normal": {"z": 1.0},
-            "body_point": {"x": 0.1},
-            "curve_points": 7,
-        },
-    ),
-    "at stamps, without weight": (
-        PredictTumbling,
-        {**ROD, **FLIES, "sampling": 1, "stamps_ns": [12_000_000_000], "gravity": 1},
-    ),
-    "a landing": (PredictImpact, {**BRICK, **FLIES}),
-    "orders": (
-        PredictImpact,
-        {**ROD, **FLIES, "contact_source": 1, "contacts": FEET, "include_orders": True},
-    ),
-    "in time": (
-        PredictImpact,
-        {
-            **BRICK,
-            "state_source": 1,
-            "state": TILTED,
-            "several_contacts_law": 2,
-            "strike_window": 0.1,
-            "hold_step": 0.001,
-        },
-    ),
-    "at once": (PredictImpact, {**BRICK, **FLIES, "restitution_law": 1, "several_contacts_law": 1}),
-    "in a plane": (
-        PredictImpact,
-        {
-            **ROD,
-            "state_source": 1,
-            "state": lying(0.8, linear_velocity={"x": 1.0, "z": -2.0}, angular_velocity={"y": 2.0}),
-            "contact_source": 1,
-            "contacts": {**LEFT, "positions": [-0.1, -0.01, 0.5]},
-            "problem": 1,
-            "plane_normal": {"y": -1.0},
-            "out_of_plane_tolerance": 1e-3,
-        },
-    ),
-    "two bodies": (
-        PredictImpact,
-        {
-            **ROD,
-            **FLIES,
-            "other_body_name": "brick",
-            "other_state": [lying(0.025)],
-            "contact_source": 1,
-            "contacts": RIGHT,
-        },
-    ),
-    "probable outcomes": (
-        PredictImpact,
-        {
-            **ROD,
-            "state_source": 1,
-            "state": UNCERTAIN,
-            "contact_source": 1,
-            "contacts": RIGHT,
-            "include_covariance": True,
-        },
-    ),
-    "margins, wrenches, statics": (
-        PredictContactMode,
-        {
-            **PUSHED,
-            "applied_wrench": {"force": {"x": 0.75}},
-            "include_margins": True,
-            "include_wrenches": True,
-            "include_statics": True,
-        },
-    ),
-    "in space": (
-        PredictContactMode,
-        {
-            **PUSHED,
-            "applied_wrench": {"force": {"x": 1.0, "y": 1.0}},
-            "include_margins": True,
-            "include_wrenches": True,
-            "friction_facets": 4,
-        },
-    ),
-    "on a cart that brakes": (
-        PredictContactMode,
-        {
-            **PUSHED,
-            "contact_source": 1,
-            "contacts": {
-                **FEET,
-                "surface_velocities": [2.0, 0.0, 0.0] * 2,
-                "surface_accelerations": [-9.0, 0.0, 0.0] * 2,
-            },
-            "problem": 2,
-        },
-    ),
-    "settled by an impact": (
-        PredictContactMode,
-        {**ROD, **FLIES, "contact_source": 1, "contacts": FEET, "problem": 2, "include_impact": True},
-    ),
-    "uncertain contacts": (
-        PredictContactMode,
-        {
-            **ROD,
-            "state_source": 1,
-            "state": lying(0.8),
-            "contact_source": 1,
-            "contacts": RIGHT,
-            "problem": 2,
-            "uncertainty_frictions": [0.1],
-            "include_geometry_margins": True,
-        },
-    ),
-    "a toss": (
-        PredictToss,
-        {**BRICK, "state_source": 1, "state": UNCERTAIN, "samples": 5, "seed": 3, "max_alternatives": 1},
-    ),
-    "many impacts": (
-        PredictImpactBatch,
-        {
-            **BRICK,
-            "states": MANY,
-            "contact_positions": [0.05, 0.0, 0.98, 0.5, 0.0, 0.98],
-            "contact_normals": [0.0, 0.0, 1.0],
-            "frictions": [0.3],
-            "restitutions": [0.5],
-        },
-    ),
-    "many tumblings": (PredictTumblingBatch, {**BRICK, "states": MANY, "times": [0.25, 0.5]}),
-    "many contact modes": (
-        PredictContactModeBatch,
-        {**PUSHED, "forces": [0.0, 0.0, 0.0, 0.3, 0.0, 0.0, 2.0, 0.0, 0.0], "include_margins": True},
-    ),
-    "contact modes of bodies": (
-        PredictBodiesContactMode,
-        {
-            "state_source": 1,
-            "states": [
-                {"pose": {"position": {"z": 0.06}}, "header": {"stamp": {"sec": 3}}, "body_name": "rod"},
-                {"pose": {"position": {"z": 0.025}}, "body_name": "brick"},
-            ],
-            "inertias": [ROD["inertia"], {}],
-            "contacts": {
-                "positions": [0.05, 0.0, 0.0, -0.05, 0.03, 0.0, -0.05, -0.03, 0.0, 0.01, 0.0, 0.05],
-                "normals": [0.0, 0.0, 1.0] * 4,
-                "frictions": [0.5, 0.4, 0.3, 0.2],
-            },
-            "contact_bodies": [1, 1, 1, 0],
-            "other_bodies": [-1, -1, -1, 1],
-            "applied_wrenches": [{"force": {"x": 4.0}}, {"torque": {"z": 0.01}}],
-            "velocity_tolerance": 1e-6,
-        },
-    ),
+    name: (getattr(srv, one), said) for name, (one, said) in TYPED.items()
 }
 
 
