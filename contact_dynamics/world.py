@@ -275,7 +275,7 @@ class Body(HasMassProperties):
         overlap, the mass of the overlap counts twice. A part without a shape contributes its mass only.
 
         Raises:
-            InvalidFieldError: there is no part, or their shapes have different roundings (`shapes.union`).
+            InvalidFieldError: there is no part.
             TooLargeError: there are more than `MAX_PARTS` convex parts.
 
         Examples:

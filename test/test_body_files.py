@@ -158,8 +158,13 @@ def test_several_collision_shapes_are_the_parts_of_a_union() -> None:
     assert [part.vertices[:, 0].min() for part in body.shape.parts] == [-0.075, 0.0]
     notched = Body.from_urdf(urdf(BOX + collision('<cylinder radius="0.01" length="0.05"/>')))
     assert [len(part.rims) for part in notched.shape.parts] == [0, 2]
-    with pytest.raises(InvalidFieldError, match=r"parts must be parts of one rounding, got .* 0\.01 m"):
-        Body.from_urdf(urdf(BOX + collision('<sphere radius="0.01"/>')))
+    caster = Body.from_urdf(urdf(BOX + collision('<sphere radius="0.02"/>', '<origin xyz="0 0 -0.02"/>')))
+    assert [part.rounding for part in caster.shape.parts] == [0.0, 0.02]
+    dropped = next_landing(
+        caster, BodyState(p_WB_W=[0, 0, 0.14], q_WB=[0, 0, 0, 1]), World(surfaces=(FLOOR,))
+    )
+    assert dropped is not None
+    assert dropped.seconds == pytest.approx(np.sqrt(2 * 0.1 / 9.80665), rel=1e-12)
 
 
 def box_mesh(

@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from contact_dynamics.measured.events import REST_SPAN, find_rest, reach_of
+from contact_dynamics.measured.events import REST_SPAN, find_rest
 from contact_dynamics.measured.flight_fit import FEWEST_FRAMES
 from contact_dynamics.measured.flights import ALONE, find_flights, find_strikes
 from contact_dynamics.records import Record
@@ -66,7 +66,7 @@ def observe(name: str, motion: MeasuredMotion) -> list[Observed]:
 def _observed(name: str, motion: MeasuredMotion, flights: tuple[slice, ...]) -> Observed:
     surfaces = motion.surfaces
     found = find_strikes(motion, flights) if surfaces else ()
-    reach = reach_of(motion.body.shape)
+    reach = motion.body.shape.reach
     alone = [strike for strike in found if strike.margin >= ALONE * reach]
     rest = find_rest(motion)
     first = slice(flights[0].start, flights[0].stop - 1) if flights else slice(0, 0)
@@ -129,7 +129,7 @@ def _thrown_again(motion: MeasuredMotion, last: slice, flight: slice) -> bool:
     corners = motion.p_WB_W[between][:, None] + turned
     gaps = np.min([surface.gaps(corners.reshape(-1, 3)) for surface in surfaces], axis=0)
     lowest = gaps.reshape(len(corners), -1).min(axis=1) - shape.rounding
-    return float(lowest.max()) > LIFTED * reach_of(shape)
+    return float(lowest.max()) > LIFTED * shape.reach
 
 
 def _rests_by(motion: MeasuredMotion, begin: int, end: int) -> int:

@@ -11,7 +11,8 @@ degrees).
 A round body's contact has the body's curvature (`contact.curvature`). It is that of the ball that rolls over
 the shape, and along a rim of radius R whose plane is tilted by theta, sin(theta) / R.
 
-`touches` finds the points where a body touches one surface.
+`touches` finds the points where a body touches one surface. A plane touches the hull of a body of several
+parts, and an obstacle the parts.
 """
 
 from __future__ import annotations
@@ -117,9 +118,10 @@ def contacts_within(
     for surface in surfaces:
         if isinstance(surface, Surface):
             level = float(surface.p_WS_W @ surface.normal_W)
-            touches += flat_touches(
-                shape, state.p_WB_W, R_WB, surface.normal_W, level=level, tolerance=distance_tolerance
-            )
+            for hull in shape.hulls:
+                touches += flat_touches(
+                    hull, state.p_WB_W, R_WB, surface.normal_W, level=level, tolerance=distance_tolerance
+                )
         else:
             touches += touches_of(shape, state.p_WB_W, R_WB, surface, distance_tolerance)
         owners += [surface] * (len(touches) - len(owners))

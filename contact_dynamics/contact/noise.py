@@ -304,19 +304,19 @@ def _points_near_flats(
     """Return the points that are nearer to flats than the noise of their gaps at `REST_LEVEL` allows."""
     state, shape, R_WB = noisy.state, body.shape, noisy.state.R_WB
     place, turn = (float(np.linalg.norm(noisy.root[i : i + 3])) for i in (0, 3))
-    far = [math.hypot(*corner) for corner in shape.vertices.tolist()]
-    far += [math.hypot(*rim.center) + rim.radius for rim in shape.rims]
-    noise = math.sqrt(QUANTILES[1]) * (place + turn * max(far))
+    far = max(hull.reach - hull.rounding for hull in shape.hulls)
+    noise = math.sqrt(QUANTILES[1]) * (place + turn * far)
     found = []
     for surface in surfaces:
         if not isinstance(surface, Surface):
             continue
         n_W, level = surface.normal_W, float(surface.p_WS_W @ surface.normal_W)
-        for touch in flat_touches(
-            shape, state.p_WB_W, R_WB, n_W, level=level, tolerance=distance_tolerance + noise
-        ):
-            center = touch.p_WC_W + shape.rounding * n_W
-            found.append(_Point((center - state.p_WB_W) @ R_WB, n_W, level + shape.rounding))
+        for hull in shape.hulls:
+            for touch in flat_touches(
+                hull, state.p_WB_W, R_WB, n_W, level=level, tolerance=distance_tolerance + noise
+            ):
+                center = touch.p_WC_W + hull.rounding * n_W
+                found.append(_Point((center - state.p_WB_W) @ R_WB, n_W, level + hull.rounding))
     return found
 
 

@@ -149,8 +149,8 @@ class Hull(Protocol):
         """Its corners, edges and faces, in the axes in which the pose is given."""
 
 
-Pair: TypeAlias = "tuple[ConvexShape, Hull]"
-"""A convex part of a body, and a hull that it may touch."""
+Pair: TypeAlias = "tuple[ConvexShape, Hull, float]"
+"""A convex part of a body, a hull that it may touch, and how far the surface is from this hull, m."""
 
 
 class Site(NamedTuple):
@@ -212,6 +212,9 @@ def lowest_along(shape: ConvexShape, p_WB_W: FloatArray, R_WB: FloatArray, axes:
 
     It is at one pose along unit directions, (n, 3), or at n poses along one direction, (3,).
     """
+    if len(shape.hulls) > 1:
+        found: FloatArray = np.min([lowest_along(hull, p_WB_W, R_WB, axes) for hull in shape.hulls], axis=0)
+        return found
     axes_B = axes @ R_WB
     parts = [axes_B @ shape.vertices.T]
     for rim in shape.rims:
@@ -229,7 +232,7 @@ def touches_of(
     Raises:
         NotSupportedError: a rim is at an edge or a corner of the hull.
     """
-    return touches_between([(part, hull) for part in shape.convex_parts], p_WB_W, R_WB, tolerance)
+    return touches_between([(part, hull, 0.0) for part in shape.convex_parts], p_WB_W, R_WB, tolerance)
 
 
 def touches_between(
@@ -265,11 +268,12 @@ def _with_shared_normals(
 
     The normal that separates the most pairs comes first.
     """
-    groups = [_axes(shape, p_WB_W, R_WB, hull.features) for (shape, hull), _ in near]
+    groups = [_axes(shape, p_WB_W, R_WB, hull.features) for (shape, hull, _), _ in near]
     axes = np.concatenate([group for same in zip_longest(*groups, fillvalue=_NONE) for group in same])
-    levels = [(axes @ hull.features.corners.T).max(axis=1) for (_, hull), _ in near]
-    gaps = np.array([lowest_along(shape, p_WB_W, R_WB, axes) for (shape, _), _ in near]) - levels
-    separated = gaps >= [[min(site.gap, 0.0) - tolerance] for _, site in near]
+    levels = [(axes @ hull.features.corners.T).max(axis=1) for (_, hull, _), _ in near]
+    gaps = np.array([lowest_along(shape, p_WB_W, R_WB, axes) for (shape, _, _), _ in near]) - levels
+    slack = max(tolerance, SAME_POINT)  # each pair is separated along its own normal, also with rounding
+    separated = gaps >= [[min(site.gap, 0.0) - slack] for _, site in near]
     waiting = np.ones(len(near), dtype=bool)
     while waiting.any():
         counts = separated[waiting].sum(axis=0)
@@ -280,7 +284,7 @@ def _with_shared_normals(
         waiting[chosen] = False
         heights = np.array([levels[i][best] for i in chosen])
         order = np.argsort(heights, kind="stable")
-        for rows in np.split(order, np.flatnonzero(np.diff(heights[order]) > tolerance) + 1):
+        for rows in np.split(order, np.flatnonzero(np.diff(heights[order]) > slack) + 1):
             yield [
                 (near[i][0], Site(float(gaps[i, best]), axes[best], float(levels[i][best])))
                 for i in chosen[rows].tolist()
@@ -291,7 +295,7 @@ def _touches_at(
     pair: Pair, site: Site, p_WB_W: FloatArray, R_WB: FloatArray, tolerance: float
 ) -> list[Touch]:
     """Return the contacts of a convex body with a hull where they are nearest."""
-    (shape, hull), n_W = pair, site.normal_W
+    (shape, hull, rounding), n_W = pair, site.normal_W
     theirs = hull.features
     if shape.rims and float((theirs.normals @ n_W).max()) < 1.0 - SAME_POINT:
         message = f"shape must touch with a rim at a face only, got a rim at an edge of {hull.name!r}"
@@ -302,7 +306,8 @@ def _touches_at(
     lowest = float(lowest_along(shape, p_WB_W, R_WB, n_W[None])[0])
     lower = outline(theirs.corners[theirs.corners @ n_W >= lowest - tolerance], frame)
     rounded = Rounded(1.0 / shape.rounding, tolerance) if shape.rounding > 0.0 and not shape.rims else None
-    return overlap([touches[i] for i in upper.order], upper, lower, frame, rounded)
+    found = overlap([touches[i] for i in upper.order], upper, lower, frame, rounded)
+    return [each._replace(p_WC_W=each.p_WC_W + rounding * n_W) for each in found] if rounding else found
 
 
 class Outline(NamedTuple):

@@ -117,6 +117,4 @@ def warn_if_far(body: HasMassProperties, state: BodyState, points_W: FloatArray)
 @lru_cache(maxsize=64)
 def _reach(shape: ConvexShape) -> float:
     """Return the largest distance of a shape's points from the centre of mass, m."""
-    corners = [math.hypot(*corner) for corner in shape.vertices.tolist()]
-    rims = [math.hypot(*rim.center) + rim.radius for rim in shape.rims]
-    return max([*corners, *rims]) + shape.rounding
+    return shape.reach

@@ -49,11 +49,14 @@ def drawn_shape(shape: ConvexShape) -> Shape:
     """Return a body's shape. A round one has circles and radii among its edges, which show how it turns."""
     if shape.parts:
         drawn = [drawn_shape(part) for part in shape.parts]
+        triangles = np.concatenate([part.triangles_B for part in drawn])
+        edges = np.concatenate([part.edges_B for part in drawn])
+        points = np.concatenate([triangles.reshape(-1, 3), edges.reshape(-1, 3)])
         return Shape(
-            triangles_B=np.concatenate([part.triangles_B for part in drawn]),
+            triangles_B=triangles,
             normals_B=np.concatenate([part.normals_B for part in drawn]),
-            edges_B=np.concatenate([part.edges_B for part in drawn]),
-            size=drawn_shape(replace(shape, parts=())).size,
+            edges_B=edges,
+            size=float(np.linalg.norm(np.ptp(points, axis=0))) if len(points) else NO_SIZE,
         )
     if shape.is_polyhedron:
         return convex_shape(shape.vertices)

@@ -5,7 +5,7 @@ At any time one plane separates the body from an obstacle (`contact.touches`). W
 this plane, it does not touch. `acceleration_bounds` says for how long it must stay above. The search goes to
 the end of that time, takes the plane that separates best then, and repeats (conservative advancement;
 Mirtich, Impulse-based dynamic simulation of rigid body systems, Berkeley 1996). It finds a touch within
-`GRAZING_DEPTH`, and misses no deeper one.
+`GRAZING_DEPTH`, and misses no deeper one. Each convex part of a body has its own plane and its own time.
 
 Not covered: a body that hovers so close and so long that the search needs more than `MAX_STEPS` steps
 (`NotSupportedError`), and rims that come to edges and corners (`contact.touches`).

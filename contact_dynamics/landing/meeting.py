@@ -113,7 +113,7 @@ def next_meeting(
     restitution = check_within("restitution", restitution, 0.0, 1.0)
     for each in (body, other):
         check_has_shape(each)
-        if each.shape.rims:
+        if any(part.rims for part in each.shape.convex_parts):
             message = f"body {each.name!r} must have a shape without circular rims to meet another body"
             raise NotSupportedError(message)
     tolerance = max(check_not_negative("distance_tolerance", distance_tolerance), DISTANCE_TOLERANCE)
@@ -186,14 +186,14 @@ class _PairOfParts:
 
     def __init__(self, part: ConvexShape, theirs: ConvexShape, name: str) -> None:
         self.shape = replace(part, rounding=part.rounding + theirs.rounding)
-        self.hull = _Hull(name, features_of(theirs))
+        self.hull, self.rounding = _Hull(name, features_of(theirs)), theirs.rounding
         self.corners, self.theirs = part.vertices, theirs.vertices
         self.arms, self.their_arms = (np.linalg.norm(each, axis=1) for each in (self.corners, self.theirs))
 
     @property
     def both(self) -> Pair:
-        """Return the two parts."""
-        return self.shape, self.hull
+        """Return the two parts, the second with the distance of its surface from its hull."""
+        return self.shape, self.hull, self.rounding
 
     def site(self, at: _Relative) -> Site:
         """Return where the parts are nearest, in the axes of the second body."""
@@ -296,6 +296,5 @@ class _Bodies:
         touches = touches_between(pairs, at.p @ at.R_other, at.R_other.T @ at.R, tolerance)
         normals = np.array([touch.normal_W for touch in touches]).reshape(-1, 3) @ at.R_other.T
         arms = np.array([touch.p_WC_W for touch in touches]).reshape(-1, 3) @ at.R_other.T
-        arms = arms + self.other.shape.rounding * normals  # from the second hull to its surface
         velocities = at.v + np.cross(at.w, arms - at.p) - np.cross(at.w_other, arms)
         return _Touching(at.p_other + arms, normals, velocities)

@@ -66,7 +66,7 @@ class FirstContact(Record):
     Attributes:
         seconds: Time of the arrival, s after the state's stamp, >= 0.
         vertices: Index of the part that arrives, then the indices of other parts within `GRAZING_DEPTH`.
-            Corners are counted first, then rims.
+            Corners are counted first, then rims. If the shape has several `hulls`, they are those of one.
         p_WC_W: (3,), m, point that arrives, world.
         v_WC_W: (3,), m/s, velocity of that point, world axes.
     """
@@ -108,15 +108,14 @@ def first_contact(
             normal is not a unit vector, the shape has no corners or rims, the horizon is negative, or an
             integrated motion does not reach the horizon.
     """
-    search = Descent(
-        motion,
-        shape_B if isinstance(shape_B, ConvexShape) else _hull(shape_B),
-        check_magnitude("p_WS_W", check_array("p_WS_W", p_WS_W, (3,))),
-        check_unit("normal_W", normal_W, 3),
-    )
-    if search.shape.is_empty:
+    shape = shape_B if isinstance(shape_B, ConvexShape) else _hull(shape_B)
+    point = check_magnitude("p_WS_W", check_array("p_WS_W", p_WS_W, (3,)))
+    normal = check_unit("normal_W", normal_W, 3)
+    if shape.is_empty:
         raise InvalidFieldError("shape_B", "nothing", "a shape or at least one corner, which can arrive")
-    return search.run(check_not_negative("horizon", horizon), SearchWork() if work is None else work)
+    until, spent = check_not_negative("horizon", horizon), SearchWork() if work is None else work
+    found = [Descent(motion, hull, point, normal).run(until, spent) for hull in shape.hulls]
+    return min((each for each in found if each), key=lambda each: each.seconds, default=None)
 
 
 def _hull(corners: ArrayLike) -> ConvexShape:

@@ -62,7 +62,6 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from contact_dynamics.measured.motion import MeasuredMotion, MeasuredPoses
-    from contact_dynamics.shapes.convex import ConvexShape
     from contact_dynamics.validation import FloatArray
 
     IntArray = NDArray[np.intp]
@@ -180,7 +179,7 @@ def _end(motion: MeasuredMotion, flight: slice, after: slice | None) -> Iterator
     if not contacts.near.any():
         return
     surface, gap = contacts.nearest(0)
-    low = contacts.gaps[0] < contacts.gaps[0].min() + ALONE * reach_of(motion.body.shape)
+    low = contacts.gaps[0] < contacts.gaps[0].min() + ALONE * motion.body.shape.reach
     if gap is not None and gap < -LANDING_GAP:
         return
 
@@ -311,7 +310,7 @@ def _windows(motion: MeasuredMotion, firsts: range, count: int) -> Iterator[_Win
     """Yield for each window of ``count`` samples a rest or a slide at its middle, or None."""
     noise = np.repeat([motion.position_noise, motion.orientation_noise], 3)
     allowed = DEVIATIONS * noise + np.repeat([POSITION_SLACK, ORIENTATION_SLACK], 3)
-    reach = reach_of(motion.body.shape)
+    reach = motion.body.shape.reach
     for at in range(0, len(firsts), AT_ONCE):
         samples = np.array(firsts[at : at + AT_ONCE])[:, None] + np.arange(count)
         middles = samples[:, count // 2]
@@ -351,13 +350,6 @@ def _windows(motion: MeasuredMotion, firsts: range, count: int) -> Iterator[_Win
                 if counts[k]
                 else None
             )
-
-
-def reach_of(shape: ConvexShape) -> float:
-    """Return the distance of the farthest point of a shape from the mass centre, m."""
-    rims = [float(np.linalg.norm(rim.center)) + rim.radius for rim in shape.rims]
-    corners = np.linalg.norm(shape.vertices, axis=1).tolist()
-    return max([*corners, *rims], default=0.0) + shape.rounding
 
 
 def _mode_event(motion: MeasuredMotion, first: _Window, last: _Window) -> FoundEvent:

@@ -249,7 +249,8 @@ def _crossing(before: FlightFit, after: FlightFit) -> tuple[float, float]:
 
 def corner_heights(poses: MeasuredPoses, state: BodyState) -> FloatArray:
     """Return the heights of the k corners of a body above each of s flat surfaces, (s, k), m."""
-    shape = poses.body.shape
-    corners = state.p_WB_W + shape.vertices @ state.R_WB.T
-    gaps = [surface.gaps(corners) - shape.rounding for surface in poses.surfaces]
+    hulls = poses.body.shape.hulls
+    corners = state.p_WB_W + np.concatenate([hull.vertices for hull in hulls]) @ state.R_WB.T
+    roundings = np.repeat([hull.rounding for hull in hulls], [len(hull.vertices) for hull in hulls])
+    gaps = [surface.gaps(corners) - roundings for surface in poses.surfaces]
     return np.array(gaps).reshape(len(gaps), len(corners))

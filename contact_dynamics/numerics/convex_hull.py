@@ -86,10 +86,13 @@ def extreme_points(points: FloatArray) -> FloatArray:
     if len(axes) == 1:
         return points[sorted({int(local.argmin()), int(local.argmax())})]
     hull = hull_of("vertices", local)
-    normals = hull.equations[:, :-1]
-    kept = [
-        i
-        for i in sorted(hull.vertices.tolist())
-        if np.linalg.svd(normals[(hull.simplices == i).any(axis=1)], compute_uv=False)[-1] > FLAT_HULL
-    ]
-    return points[kept]
+    corners = hull.simplices.ravel()
+    order = np.argsort(corners)
+    normals = hull.equations[order // len(axes), :-1]
+    used, starts, counts = np.unique(corners[order], return_index=True, return_counts=True)
+    sharp = np.zeros(len(used), dtype=bool)
+    for count in np.unique(counts):
+        rows = np.flatnonzero(counts == count)
+        around = normals[starts[rows, None] + np.arange(count)]  # (corners, facets at each, axes)
+        sharp[rows] = np.linalg.svd(around, compute_uv=False)[:, -1] > FLAT_HULL
+    return points[used[sharp]]

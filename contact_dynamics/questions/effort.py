@@ -176,7 +176,8 @@ def _corners(body: Body | str, context: Context) -> int:
     """Return the number of pairs of a corner of the body and a surface. A rim counts as several corners."""
     known = context.world.body(body) if isinstance(body, str) else body
     shape = known.shape
-    return (len(shape.vertices) + _CORNERS_OF_A_RIM * len(shape.rims)) * len(context.world.surfaces)
+    corners = sum(len(part.vertices) + _CORNERS_OF_A_RIM * len(part.rims) for part in shape.convex_parts)
+    return corners * len(context.world.surfaces)
 
 
 def _is_quick_fit(body: Body | str, source: StateSource, context: Context) -> bool:

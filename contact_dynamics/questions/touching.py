@@ -156,9 +156,8 @@ def outside_shape(
     numbers = range(len(points_W)) if numbers is None else numbers
     points_B = np.einsum("...j,...jk->...k", points_W - p_WB_W, R_WB)
     gaps: FloatArray = np.min([_hull_gaps(part, points_B) for part in shape.convex_parts], axis=0)
-    largest = max((rim.radius for rim in shape.rims), default=0.0)
+    largest = max((rim.radius for part in shape.convex_parts for rim in part.rims), default=0.0)
     left_out = largest * (1.0 - math.cos(math.pi / RIM_CORNERS))
-    gaps -= shape.rounding
     tolerance = max(distance_tolerance, DISTANCE_TOLERANCE) + left_out
     warnings: list[str] = []
     for where, off in (("outside of", gaps), ("inside", -gaps)):
@@ -207,7 +206,7 @@ def moves_into(
 
 
 def _hull_gaps(shape: ConvexShape, points_B: FloatArray) -> FloatArray:
-    """Return the distances, (n,), m, of points, (n, 3), from a shape's hull. They are negative inside."""
+    """Return the distances, (n,), m, of points, (n, 3), from a convex shape. They are negative inside."""
     features = features_of(shape)
     away = np.arange(len(points_B))
     gaps = np.zeros(len(points_B))  # negative inside the shape
@@ -223,7 +222,7 @@ def _hull_gaps(shape: ConvexShape, points_B: FloatArray) -> FloatArray:
     step = max(1, _PAIRS_AT_ONCE // max(1, len(features.triangles)))
     for rows in (away[start : start + step] for start in range(0, len(away), step)):
         gaps[rows] = np.linalg.norm(points_B[rows] - closest_points(features, points_B[rows]), axis=1)
-    return gaps
+    return gaps - shape.rounding
 
 
 def _touched(body: Body, state: BodyState, world: World, distance_tolerance: float) -> ContactSet:
@@ -236,7 +235,8 @@ def _touched(body: Body, state: BodyState, world: World, distance_tolerance: flo
 
 def flush_rim(body: Body, contacts: ContactSet) -> tuple[str, ...]:
     """Return a warning if contacts found on a body's shape are those of a rim that lies flush."""
-    if not body.shape.rims or max(Counter(contacts.surfaces).values(), default=0) < RIM_POINTS:
+    most = max(Counter(contacts.surfaces).values(), default=0)
+    if most < RIM_POINTS or not any(hull.rims for hull in body.shape.hulls):
         return ()
     too_small = f"{1.0 - math.cos(math.pi / RIM_POINTS):.0%}"
     words = f"the flush rim of {body.name!r} counts as {RIM_POINTS} points"

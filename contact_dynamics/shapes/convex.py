@@ -15,7 +15,9 @@ Not covered: ellipsoids, meshes (give their corners to `polyhedron`).
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, field, replace
+from functools import lru_cache
 from typing import TYPE_CHECKING, Final, NamedTuple
 
 import numpy as np
@@ -82,12 +84,13 @@ class ConvexShape(Record):
             once, at their first position.
         rims: Circles in body axes.
         rounding: Radius of the ball, m, >= 0.
-        parts: Convex parts whose union the shape is. The other attributes are then those of their hull. A
-            convex shape has no parts.
+        parts: Convex parts whose union the shape is. The other attributes are then those of their hull, or
+            empty if the parts have different roundings, which no common hull has (`hulls`). A convex shape
+            has no parts.
 
     Raises:
         InvalidFieldError: a number is not finite or beyond `LARGEST_NUMBER`, a radius is negative, an axis is
-            not a unit vector, the parts have different roundings, or vertices or rims are given beside parts.
+            not a unit vector, or vertices, rims or a rounding are given beside parts.
         TooLargeError: there are more than `MAX_VERTICES` vertices, `MAX_RIMS` rims or `MAX_PARTS` parts.
     """
 
@@ -128,8 +131,7 @@ class ConvexShape(Record):
             raise TooLargeError("parts", f"{len(self.parts)} parts", f"at most {MAX_PARTS}")
         roundings = {part.rounding for part in self.parts}
         if len(roundings) > 1:
-            found = f"roundings of {min(roundings):g} m and {max(roundings):g} m"
-            raise InvalidFieldError("parts", found, "parts of one rounding", "that of a ball is its radius")
+            return
         rims = tuple(rim for part in self.parts for rim in part.rims)
         vertices = _distinct(np.concatenate([part.vertices for part in self.parts]))
         object.__setattr__(self, "vertices", vertices if rims else extreme_points(vertices))
@@ -142,14 +144,28 @@ class ConvexShape(Record):
         return self.parts or (self,)
 
     @property
+    def hulls(self) -> tuple[ConvexShape, ...]:
+        """The convex hulls that a plane can touch: that of the shape, or one for each rounding of parts."""
+        return (self,) if not self.parts or len(self.vertices) or self.rims else _hulls_of(self)
+
+    @property
+    def reach(self) -> float:
+        """The largest distance of a point of the shape from the origin, m."""
+        lengths = [0.0]
+        for hull in self.hulls:
+            lengths += [math.hypot(*corner) + hull.rounding for corner in hull.vertices.tolist()]
+            lengths += [math.hypot(*rim.center) + rim.radius + hull.rounding for rim in hull.rims]
+        return max(lengths)
+
+    @property
     def is_empty(self) -> bool:
         """Return whether the shape has no points and circles."""
-        return len(self.vertices) == 0 and not self.rims
+        return len(self.vertices) == 0 and not self.rims and not self.parts
 
     @property
     def is_polyhedron(self) -> bool:
         """Return whether only corners can touch."""
-        return not self.rims and self.rounding == 0.0
+        return not self.rims and self.rounding == 0.0 and len(self.hulls) == 1
 
     def moved(self, offset: ArrayLike, q: ArrayLike = (0.0, 0.0, 0.0, 1.0)) -> ConvexShape:
         """Return the same shape rotated by a unit quaternion x, y, z, w, then shifted by ``offset``, (3,), m.
@@ -170,6 +186,12 @@ class ConvexShape(Record):
             ),
             rounding=self.rounding,
         )
+
+
+@lru_cache(maxsize=64)
+def _hulls_of(shape: ConvexShape) -> tuple[ConvexShape, ...]:
+    roundings = dict.fromkeys(part.rounding for part in shape.parts)
+    return tuple(union([part for part in shape.parts if part.rounding == each]) for each in roundings)
 
 
 NO_SHAPE: Final = ConvexShape()
@@ -239,11 +261,10 @@ def union(shapes: Sequence[ConvexShape]) -> ConvexShape:
 
     `ConvexShape.moved` places each shape. They may touch or overlap, or be apart. Contacts with obstacles and
     other bodies are those of the parts. A plane touches only the hull of the parts, so contacts with planes,
-    and tosses, depend on the hull alone.
+    and tosses, depend on the hull alone. Tosses require parts of the same rounding, which is the radius of a
+    sphere or a capsule, and zero of a box.
 
     Raises:
-        InvalidFieldError: the shapes have different roundings, which a common hull cannot have. The rounding
-            of a sphere and a capsule is the radius.
         TooLargeError: there are more than `MAX_PARTS` convex parts.
     """
     parts = tuple(part for shape in shapes for part in shape.convex_parts if not part.is_empty)

@@ -273,8 +273,13 @@ def warn_if_implausible(what: str, mass: MassDistribution, shape: ConvexShape) -
 
 def _extent(shape: ConvexShape) -> tuple[FloatArray, FloatArray]:
     """Return the corners, (3,), m, of a shape's bounding box."""
-    centers = [shape.vertices, *(np.array([rim.center]) for rim in shape.rims)]
-    sizes = [np.zeros_like(shape.vertices)]
-    sizes += [rim.radius * np.sqrt(np.maximum(1.0 - np.square([rim.axis]), 0.0)) for rim in shape.rims]
-    center, size = np.concatenate(centers), np.concatenate(sizes) + shape.rounding
+    centers: list[FloatArray] = []
+    sizes: list[FloatArray] = []
+    for part in shape.convex_parts:
+        centers += [part.vertices, *(np.array([rim.center]) for rim in part.rims)]
+        sizes.append(np.full_like(part.vertices, part.rounding))
+        for rim in part.rims:
+            across = rim.radius * np.sqrt(np.maximum(1.0 - np.square([rim.axis]), 0.0))
+            sizes.append(across + part.rounding)
+    center, size = np.concatenate(centers), np.concatenate(sizes)
     return (center - size).min(axis=0), (center + size).max(axis=0)

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
+from contact_dynamics.errors import NotSupportedError
 from contact_dynamics.tolerances import SAME_CORNER, SAME_CORNER_SHARE
 
 if TYPE_CHECKING:
@@ -24,7 +25,15 @@ _FEW: Final = 100
 
 
 def with_distinct_corners(body: Body) -> tuple[Body, tuple[int, ...]]:
-    """Return a body without the corners that others stand for, and the indices of those it keeps."""
+    """Return a body without the corners that others stand for, and the indices of those it keeps.
+
+    Raises:
+        NotSupportedError: the parts of the shape have different roundings.
+    """
+    if len(body.shape.hulls) > 1:
+        found = [hull.rounding for hull in body.shape.hulls]
+        message = f"body {body.name!r} must have parts of one rounding for a whole toss, got {found} m"
+        raise NotSupportedError(message)
     vertices = body.shape.vertices
     dropped: set[int] = set()
     for first, second in _near_pairs(vertices):

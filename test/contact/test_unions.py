@@ -10,7 +10,8 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 import contact_dynamics as cd
-from contact_dynamics.errors import InvalidFieldError, TooLargeError
+from contact_dynamics.contact.noise import NoisyState, touching
+from contact_dynamics.errors import InvalidFieldError, NotSupportedError, TooLargeError
 from contact_dynamics.rigid_body import inertia
 from contact_dynamics.shapes import (
     ConvexShape,
@@ -176,6 +177,16 @@ def test_a_tip_near_a_seam_touches_the_face(gap: float) -> None:
             np.testing.assert_allclose(found.normals_W, [[0, 0, 1]], atol=1e-12)
 
 
+@seeds(range(4), slow=range(4, 200))
+def test_without_a_tolerance_parts_still_touch(seed: int) -> None:
+    """Rounding puts a box of quarters that lies flush in any direction a little into a table, or above it."""
+    turn = Rotation.random(random_state=seed)
+    table = obstacle(turn.apply(box_vertices((1, 1, 1)) - [0, 0, 0.5]))
+    lying = at(turn.apply([0, 0, 0.05 - 1e-12]), turn.as_quat())
+    found = cd.find_contacts(body(QUARTERS), lying, cd.World(surfaces=(table,)), distance_tolerance=0.0)
+    assert len(found) == 4
+
+
 def random_parts(rng: np.random.Generator) -> list[ConvexShape]:
     return [
         box(rng.uniform(0.05, 0.4, 3)).moved(
@@ -227,6 +238,54 @@ def test_round_parts_touch_too() -> None:
     assert sorted(on_table.p_WC_W[:, 1].round(12)) == [-0.32, 0.32]
 
 
+MALLET = cd.Body.union(
+    [cd.Body.box((0.02, 0.02, 0.3), 0.1), cd.Body.sphere(0.05, 0.5).placed([0, 0, 0.18])], name="mallet"
+)
+"""A box as its handle and a ball as its head, with the frame in the middle of the handle."""
+
+
+@pytest.mark.parametrize(
+    "surface", [FLOOR, obstacle(box_vertices((4, 4, 1)) - [0, 0, 0.5])], ids=["", "table"]
+)
+def test_parts_of_different_roundings_land_each_by_its_own(surface: cd.Surface | cd.Obstacle) -> None:
+    """The mallet falls lying, standing on its head, and upside down, from 1 m to the frame's origin."""
+    for angles, lowest, count in (([-90, 0, 0], 0.05, 1), ([180, 0, 0], 0.23, 1), ([0, 0, 0], 0.15, 4)):
+        turn = Rotation.from_euler("xyz", angles, degrees=True)
+        state = at(np.add(turn.apply(np.array(MALLET.p_FB_F)), [0, 0, 1]), turn.as_quat())
+        found = cd.next_landing(MALLET, state, cd.World(surfaces=(surface,)))
+        assert found is not None
+        assert found.seconds == pytest.approx(math.sqrt(2 * (1 - lowest) / G), rel=1e-8)
+        assert len(found.contacts) == count
+        below = turn.apply([0, 0, 0.18 if count == 1 else 0])
+        np.testing.assert_allclose(found.contacts.p_WC_W.mean(axis=0), [*below[:2], 0], atol=1e-8)
+
+
+def test_parts_of_different_roundings_meet_each_by_its_own() -> None:
+    """Two mallets that lie side by side meet head on head, and head on the end of a handle."""
+    level = Rotation.from_euler("x", -90, degrees=True)  # the head is towards +y
+    left = at(level.apply(np.array(MALLET.p_FB_F)), level.as_quat(), v=(1, 0, 0))
+    for aside, seconds in ((0.0, 1.0 - 2 * 0.05), (0.18, 1.0 - 0.05 - 0.01)):
+        right = at(np.add(left.p_WB_W, [1, aside, 0]), level.as_quat())
+        expected = [seconds + 0.05, 0.18, -0.5 * G * seconds**2]
+        for one, other in (((MALLET, left), (MALLET, right)), ((MALLET, right), (MALLET, left))):
+            found = cd.next_meeting(*one, *other, friction=0.1, restitution=0.5)
+            assert found is not None
+            assert found.seconds == pytest.approx(seconds, rel=1e-12)
+            np.testing.assert_allclose(found.contacts.p_WC_W, [expected], atol=1e-9)
+
+
+def test_parts_of_different_roundings_have_a_hull_for_each() -> None:
+    handle, head = MALLET.shape.hulls
+    assert (handle.rounding, head.rounding, len(MALLET.shape.parts)) == (0.0, 0.05, 2)
+    assert not MALLET.shape.is_empty
+    assert not MALLET.shape.is_polyhedron
+    assert MALLET.shape.reach == pytest.approx(math.hypot(0.15 + MALLET.p_FB_F[2], 0.01, 0.01), rel=1e-15)
+    with pytest.raises(
+        NotSupportedError, match=r"parts of one rounding for a whole toss, got \[0\.0, 0\.05\] m"
+    ):
+        cd.toss(MALLET, at([0, 0, 1]), cd.World(surfaces=(FLOOR,)))
+
+
 def test_a_union_is_tossed_as_its_hull() -> None:
     """Tosses have only planes, so the divided box moves as the whole one."""
     state = at([0, 0, 0.3], Rotation.from_euler("xyz", [0.2, 0.3, 0.1]).as_quat(), (1, 0, 0), (1, 2, 3))
@@ -255,13 +314,29 @@ def test_shapes_stay_unions_and_single_ones_convex() -> None:
 
 
 def test_what_cannot_be_a_union_is_named() -> None:
-    with pytest.raises(
-        InvalidFieldError, match=r"parts must be parts of one rounding, got .* 0 m and 0\.1 m"
-    ):
-        union([box(1, 1, 1), sphere(0.1)])
     with pytest.raises(InvalidFieldError, match="parts must be parts alone"):
         ConvexShape(parts=HALVES.parts, rounding=0.1)
     with pytest.raises(TooLargeError, match=f"at most {MAX_PARTS}"):
         union([box(1, 1, 1)] * (MAX_PARTS + 1))
     with pytest.raises(InvalidFieldError, match="at least one"):
         cd.Body.union([])
+
+
+def test_a_noisy_pose_of_a_mallet_is_put_on_the_floor() -> None:
+    """It lies on its head and on two corners of its handle: a tangent of the circle through the end of it."""
+    tilt = math.asin(0.05 / math.hypot(0.33, 0.01)) - math.atan2(0.01, 0.33)
+    turn = Rotation.from_euler("y", 0.5 * math.pi - tilt)
+    lying = at(
+        np.add(turn.apply(np.array(MALLET.p_FB_F)), [0, 0, 0.05 - turn.apply([0, 0, 0.18])[2]]),
+        turn.as_quat(),
+    )
+    world = cd.World(bodies=(MALLET,), surfaces=(FLOOR,))
+    exact = cd.find_contacts(MALLET, lying, world)
+    assert len(exact) == 3
+    ball = exact.p_WC_W[np.isclose(exact.p_WC_W[:, 1], 0.0, atol=1e-9)]
+    np.testing.assert_allclose(ball, [[turn.apply([0, 0, 0.18])[0], 0, 0]], atol=1e-9)
+    root = np.diag([2e-4] * 3 + [1e-3] * 3 + [0.0] * 6)
+    off = cd.BodyState(p_WB_W=np.add(lying.p_WB_W, [0, 0, 2e-4]), q_WB=lying.q_WB)
+    closed = touching(MALLET, NoisyState(off, root), (FLOOR,), distance_tolerance=1e-6)
+    found = cd.find_contacts(MALLET, closed.state, world)
+    assert len(found) == 3

@@ -43,6 +43,9 @@ def test_a_union_is_drawn_as_all_its_parts() -> None:
     assert volume == pytest.approx(0.3 * 0.1 * 0.05 + 0.05 * 0.1 * 0.2, rel=1e-12)
     assert len(shape.edges_B) == 24
     assert shape.size == pytest.approx(math.hypot(0.3, 0.1, 0.25), rel=1e-12)
+    mixed = drawn_shape(union([box(0.2, 0.2, 0.2), sphere(0.1).moved([0, 0, 0.2])]))
+    assert mixed.triangles_B[..., 2].min() == -0.1
+    assert mixed.triangles_B[..., 2].max() == pytest.approx(0.3, abs=1e-15)
 
 
 @given(count=st.integers(4, 60), seed=SEEDS)
