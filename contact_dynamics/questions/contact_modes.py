@@ -31,7 +31,7 @@ from contact_dynamics.contact_modes import (
     statics,
     wrench_sets,
 )
-from contact_dynamics.contact_modes.letters import STICKS
+from contact_dynamics.contact_modes.letters import SLIDES_LEFT, SLIDES_RIGHT, STAYS, STICKS
 from contact_dynamics.contact_modes.planar.problem import MAX_PLANAR_CONTACTS
 from contact_dynamics.contact_modes.result import ModeProbability
 from contact_dynamics.contact_modes.spatial.problem import FRICTION_FACETS
@@ -56,14 +56,22 @@ from contact_dynamics.questions.settled_impact import (
     settled_in_space,
 )
 from contact_dynamics.questions.subject import NEWEST, StateSource, covariance_of, subject_of
-from contact_dynamics.questions.touching import flush_rim, in_contact, outside_shape, without_contacts
+from contact_dynamics.questions.touching import (
+    flush_rim,
+    friction_in_tosses,
+    in_contact,
+    outside_shape,
+    without_contacts,
+)
 from contact_dynamics.rigid_body.body import BodyState
 from contact_dynamics.tolerances import FLUSH, FLUSH_ROUGHLY
 from contact_dynamics.validation import FloatArray, check_array, check_positive, check_whole
 from contact_dynamics.world import Body
 
 if TYPE_CHECKING:
-    from numpy.typing import ArrayLike
+    from collections.abc import Sequence
+
+    from numpy.typing import ArrayLike, NDArray
 
     from contact_dynamics.contact.noise import NoisyState
     from contact_dynamics.plane.projection import PlanarProblem
@@ -256,8 +264,8 @@ class ContactModeAnswer(Answer):
             zero if not requested.
         warnings: Texts about limited validity: a contact outside the body's shape, a surface that the body
             touches without an explicit contact, contacts treated as flush because the verdict would otherwise
-            be undecided, margins that are NaN, margins in a plane that was chosen from the load, or a flush
-            rim that is represented by a few points.
+            be undecided, margins that are NaN, margins in a plane that was chosen from the load, a flush rim
+            that is represented by a few points, or a surface whose friction of sliding differs in tosses.
     """
 
     body_name: str
@@ -290,6 +298,9 @@ class ContactModeAnswer(Answer):
     probabilities: tuple[ModeProbability, ...] | None = None
     warnings: tuple[str, ...] = ()
 
+
+_SLIDING: Final = {SLIDES_LEFT, SLIDES_RIGHT, STAYS}
+_LITTLE_FRICTION: Final = 0.01  # relative to the largest that the normal force allows
 
 _IN_PLANE_ONLY: Final = (
     "margins and statics hold for wrench changes in the plane of motion; problem=SPATIAL has them for all",
@@ -324,6 +335,8 @@ def answer(question: ContactModeQuestion, context: Context | None = None) -> Con
         at_rest = [mode.mode for mode in found.modes] == [STICKS * len(contacts)]
         has_loads = question.include_margins or question.include_statics or question.include_wrenches
         doubts = () if at_rest and not has_loads else flush_rim(body, contacts)
+        uses = [0.0 if each else None for each in _uses_friction(found.modes, contacts)]
+        doubts += friction_in_tosses(known.world, contacts, uses)
     doubts = (*(known.notes or ()), *doubts)
     found = replace(found, warnings=(*found.warnings, *doubts)) if doubts else found
     if not question.include_probabilities:
@@ -332,6 +345,19 @@ def answer(question: ContactModeQuestion, context: Context | None = None) -> Con
         covariance_of(case.subject)  # there is none, which is an error
         return found
     return replace(found, probabilities=_probabilities(question, case, noisy, known))
+
+
+def _uses_friction(modes: Sequence[SpatialMode], contacts: ContactSet) -> NDArray[np.bool_]:
+    """Return whether each contact slides in one of the modes, or its surface holds the body by friction."""
+    uses = np.zeros(len(contacts), dtype=bool)
+    same = np.equal.outer(*[np.array(contacts.surfaces, dtype=object)] * 2)
+    for mode in modes:
+        forces_W = same.astype(float) @ mode.contact_forces_W  # of all contacts with the surface together
+        normal = np.einsum("ij,ij->i", forces_W, contacts.normals_W)
+        tangential = np.linalg.norm(forces_W - normal[:, None] * contacts.normals_W, axis=1)
+        uses |= tangential > _LITTLE_FRICTION * contacts.frictions * normal
+        uses |= [letter in _SLIDING for letter in mode.mode]
+    return uses
 
 
 def _probabilities(

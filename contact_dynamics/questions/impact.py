@@ -42,7 +42,13 @@ from contact_dynamics.questions.plane_of_motion import (
     several_in_plane,
 )
 from contact_dynamics.questions.subject import NamedState, Subject, at_stamp, covariance_of, subject_of
-from contact_dynamics.questions.touching import check_has_shape, contacts_of, moves_into, outside_shape
+from contact_dynamics.questions.touching import (
+    check_has_shape,
+    contacts_of,
+    friction_in_tosses,
+    moves_into,
+    outside_shape,
+)
 from contact_dynamics.records import Record
 from contact_dynamics.rigid_body.body import BodyState
 
@@ -77,7 +83,7 @@ def answer(question: ImpactQuestion, context: Context | None = None) -> ImpactAn
     strike = _strike_of(question, known)
     problem: PlanarProblem | None = None
     resolved: ResolvedImpact
-    warnings = (*(known.notes or ()), *_outside(question, strike))
+    warnings = (*(known.notes or ()), *_outside(question, strike), *_slower_friction(question, strike, known))
     law = question.several_contacts_law
     ordered = strike.subject.body.mass_properties, strike.state, strike.contacts
     if isinstance(law, InTime):
@@ -145,6 +151,16 @@ def _outside(question: ImpactQuestion, strike: _Strike) -> tuple[str, ...]:
         R_WB=strike.subject.state.R_WB,
         distance_tolerance=strike.distance_tolerance,
     )
+
+
+def _slower_friction(question: ImpactQuestion, strike: _Strike, context: Context) -> tuple[str, ...]:
+    """Return warnings of contacts that approach so slowly that they have another friction in tosses."""
+    if question.contacts is not None:
+        return ()
+    velocities = relative_velocities(strike.state, strike.contacts)
+    speeds = -np.einsum("ij,ij->i", velocities, strike.contacts.normals_W)
+    strikes = [speed if speed > strike.velocity_tolerance else None for speed in speeds.tolist()]
+    return friction_in_tosses(context.world, strike.contacts, strikes)
 
 
 def _into_the_world(strike: _Strike, resolved: ResolvedImpact, context: Context) -> tuple[str, ...]:

@@ -41,7 +41,8 @@ class ImpactAnswer(Answer):
         velocity_tolerance: m/s, tolerance that was used.
         distance_tolerance: m, tolerance that was used.
         warnings: Texts about limited validity: an order of impacts that mechanics does not determine, a
-            contact outside the body's shape, or a body that moves into a surface that it touches elsewhere.
+            contact outside the body's shape, a body that moves into a surface that it touches elsewhere, or a
+            surface whose friction of slow impacts differs in tosses.
     """
 
     body_name: str

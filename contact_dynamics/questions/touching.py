@@ -21,6 +21,7 @@ from contact_dynamics.rigid_body.published_frame import covariance_of_other_poin
 from contact_dynamics.shapes.hull_features import RIM_CORNERS, features_of
 from contact_dynamics.shapes.obstacle import closest_points
 from contact_dynamics.tolerances import DISTANCE_TOLERANCE, MOVES_INTO
+from contact_dynamics.world import Surface
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -231,6 +232,30 @@ def _touched(body: Body, state: BodyState, world: World, distance_tolerance: flo
         with suppress(NotSupportedError):
             return contacts_within(body, state, world.surfaces, distance_tolerance)
     return NO_CONTACTS
+
+
+def friction_in_tosses(world: World, contacts: ContactSet, speeds: Sequence[float | None]) -> tuple[str, ...]:
+    """Return warnings of surfaces with another friction in tosses than at the contacts found with them.
+
+    Args:
+        world: The surfaces.
+        contacts: Contacts found with them.
+        speeds: Approach speed of each contact in an impact, m/s, 0 for one that slides, or None for neither.
+    """
+    planes = {each.name: each for each in world.surfaces if isinstance(each, Surface)}
+    found = {}
+    for name, speed in zip(contacts.surfaces, speeds, strict=True):
+        plane = planes.get(name)
+        if plane is None or speed is None or plane.lasting_factor == 1.0:
+            continue
+        share = 0.0 if speed == 0.0 else min(speed / plane.lasting_speed, 1.0) if plane.lasting_speed else 1.0
+        factor = plane.lasting_factor + share * (1.0 - plane.lasting_factor)
+        if share < 1.0:
+            found[name] = (
+                f"the friction of {name!r} is {plane.friction:g} in this answer, and "
+                f"{factor * plane.friction:.3g} in tosses (lasting_factor, lasting_speed)"
+            )
+    return tuple(found.values())
 
 
 def flush_rim(body: Body, contacts: ContactSet) -> tuple[str, ...]:
