@@ -352,7 +352,7 @@ def _uses_friction(modes: Sequence[SpatialMode], contacts: ContactSet) -> NDArra
     uses = np.zeros(len(contacts), dtype=bool)
     same = np.equal.outer(*[np.array(contacts.surfaces, dtype=object)] * 2)
     for mode in modes:
-        forces_W = same.astype(float) @ mode.contact_forces_W  # of all contacts with the surface together
+        forces_W = same.astype(float) @ mode.contact_forces_W  # those of one surface together
         normal = np.einsum("ij,ij->i", forces_W, contacts.normals_W)
         tangential = np.linalg.norm(forces_W - normal[:, None] * contacts.normals_W, axis=1)
         uses |= tangential > _LITTLE_FRICTION * contacts.frictions * normal
