@@ -28,8 +28,8 @@ from contact_dynamics.nodes.receiving import Receiving
 from contact_dynamics.nodes.running import run_node
 from contact_dynamics.nodes.service_front import EVENT_QOS
 from contact_dynamics.nodes.situations import Part, Present, Situation
+from contact_dynamics.nodes.state_subscriptions import PassedOn
 from contact_dynamics.questions.services import SERVICES
-from contact_dynamics.questions.state_store import StateStore
 from contact_dynamics.recording.cdr import cut_to_its_end
 from contact_dynamics.recording.definitions import find_definition
 from contact_dynamics.replay.timeline import MONITOR_EVENT
@@ -37,14 +37,13 @@ from contact_dynamics_interfaces.msg import MonitorEvent
 from msg_adapters.stamps import stamp_to_msg
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Mapping, Sequence
+    from collections.abc import Iterable, Mapping, Sequence
 
     from contact_dynamics.monitoring.evidence import Parameter
     from contact_dynamics.monitoring.monitor import MonitoredEvent
     from contact_dynamics.nodes.inbox import InboxNode, Taken
     from contact_dynamics.nodes.parameter_reader import ParameterSource
     from contact_dynamics.nodes.parameters import ServerParameters
-    from contact_dynamics.questions.state_store import ReadState
     from contact_dynamics.questions.uncertain_state import KnownState
 
 
@@ -102,7 +101,7 @@ class Monitoring(Receiving):
         self._came: dict[str, float] = {}  # s, arrival of the last state of each body with unsettled events
         self._summary = Summary()
         self._monitor = Monitor(informed_by(parameters), MonitorSettings(error=error))
-        super().__init__(node, parameters, run=run, states=_Watched(self._take))
+        super().__init__(node, parameters, run=run, states=PassedOn(self._take, is_stored=True))
         self._publisher = node.create_publisher(MonitorEvent, "~/events", EVENT_QOS)
         self._definition = find_definition(MONITOR_EVENT)
         self._log.add_topic(self._publisher.topic_name, MONITOR_EVENT, EVENT_QOS)
@@ -174,28 +173,6 @@ class Monitoring(Receiving):
             for surface, report in self._summary.latest.items()
             if report.changed is not None
         ]
-
-
-class _Watched(StateStore):
-    """A store that passes on each state that it stores."""
-
-    def __init__(self, take: Callable[[str, KnownState], None]) -> None:
-        super().__init__(history=0.0, timeout=0.0)
-        self._take = take
-
-    def add(self, body_name: str, state: KnownState, *, now_ns: int | None = None) -> None:
-        """Store a state, and pass it on."""
-        super().add(body_name, state, now_ns=now_ns)
-        self._take(body_name, state)
-
-    def add_unread(
-        self, body_name: str, stamp_ns: int, read: ReadState, *, now_ns: int | None = None
-    ) -> None:
-        """Store a state, decode it, and pass it on."""
-        super().add_unread(body_name, stamp_ns, read, now_ns=now_ns)
-        state = read()
-        if state is not None:
-            self._take(body_name, state)
 
 
 class LiveMonitor(ManagedNode):

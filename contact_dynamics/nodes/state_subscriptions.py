@@ -21,6 +21,7 @@ from contact_dynamics.errors import ContactDynamicsError
 from contact_dynamics.nodes.situations import RECENT_S, Present, Situation
 from contact_dynamics.nodes.state_sources import no_message
 from contact_dynamics.nodes.topic_faults import TopicFaults, TopicTraffic
+from contact_dynamics.questions.state_store import StateStore
 from contact_dynamics.recording.cdr import leading_stamp_ns
 from contact_dynamics.recording.message_types import message_class
 from msg_adapters.rejected_fields import check_numbers, in_fields
@@ -34,7 +35,7 @@ if TYPE_CHECKING:
     from contact_dynamics.nodes.inbox import InboxNode, Taken
     from contact_dynamics.nodes.state_sources import BodyReader, StateSource
     from contact_dynamics.nodes.world_parameters import BodySources
-    from contact_dynamics.questions.state_store import Arrivals, StateStore
+    from contact_dynamics.questions.state_store import Arrivals, ReadState
     from contact_dynamics.questions.uncertain_state import KnownState
 
 STATE_QOS = QoSProfile(depth=1000)
@@ -204,6 +205,31 @@ def _leading_frame(data: bytes) -> bytes:
     """Return the serialized frame of a header, with the four bytes of its length."""
     letters = int.from_bytes(data[_FRAME_AT : _FRAME_AT + 4], "little" if data[1] else "big")
     return data[_FRAME_AT : _FRAME_AT + 4 + letters]
+
+
+class PassedOn(StateStore):
+    """A store that passes on each state when it arrives, and stores it only if ``is_stored``."""
+
+    def __init__(self, take: Callable[[str, KnownState], object], *, is_stored: bool) -> None:
+        """Call ``take`` with the body and each state. States that are not stored may have any stamp."""
+        super().__init__(history=0.0, timeout=0.0)
+        self._take, self._is_stored = take, is_stored
+
+    def add(self, body_name: str, state: KnownState, *, now_ns: int | None = None) -> None:
+        """Pass on a state."""
+        if self._is_stored:
+            super().add(body_name, state, now_ns=now_ns)
+        self._take(body_name, state)
+
+    def add_unread(
+        self, body_name: str, stamp_ns: int, read: ReadState, *, now_ns: int | None = None
+    ) -> None:
+        """Decode a state, and pass it on."""
+        if self._is_stored:
+            super().add_unread(body_name, stamp_ns, read, now_ns=now_ns)
+        state = read()
+        if state is not None:
+            self._take(body_name, state)
 
 
 class OfferedQosWatch:

@@ -33,10 +33,9 @@ from contact_dynamics.nodes.parameters import check_change, read_server_paramete
 from contact_dynamics.nodes.run_record import CHANGES, changed_values, plain
 from contact_dynamics.nodes.running import run_node
 from contact_dynamics.nodes.server_core import ServerCore
-from contact_dynamics.nodes.state_subscriptions import StateTopic
+from contact_dynamics.nodes.state_subscriptions import PassedOn, StateTopic
 from contact_dynamics.nodes.topic_faults import TopicFaults
 from contact_dynamics.questions.services import SERVICES
-from contact_dynamics.questions.state_store import StateStore
 from contact_dynamics.questions.uncertain_state import state_of
 from contact_dynamics.recording.cdr import EventType, event_type_of
 from contact_dynamics.viewing.picture import Picture
@@ -124,6 +123,7 @@ class Visualizer(InboxNode):
             carried=core.parameters.carried,
         )
         self._states = StatesInTurn(self._picture, guarded=self._guarded)
+        self._came_ns = 0
         self._answers: deque[_Waiting] = deque()
         self._server = server
         self._values = {name: plain(parameter.value) for name, parameter in self._parameters.items()}
@@ -131,13 +131,13 @@ class Visualizer(InboxNode):
         self.create_subscription(MonitorEvent, f"{own.monitor}/events", self._tell_event, EVENT_QOS)
         self._events = [self._listen(shown, f"{server}/{shown.name}") for shown in SERVICES]
         self._wait_for_server(server, self._events, server_wait)
-        handed_on, faults = _HandedOn(self._states), TopicFaults(self.get_logger().warning)
+        passed_on, faults = PassedOn(self._pass_on, is_stored=False), TopicFaults(self.get_logger().warning)
         self._topics = [
             StateTopic(
                 self,
                 source,
-                states=handed_on,
-                record=handed_on.note,
+                states=passed_on,
+                record=self._note_arrival,
                 offered=lambda _topic, _offers: None,
                 faults=faults,
             )
@@ -145,6 +145,13 @@ class Visualizer(InboxNode):
         ]
         self.create_timer(SHORTEST_S, self._keep_pace, clock=Clock(clock_type=ClockType.STEADY_TIME))
         self.get_logger().info(f"ready: draws {server} to {self._recording.description}")
+
+    def _note_arrival(self, topic: str, taken: Taken) -> None:  # noqa: ARG002  it is the same for all topics
+        """Store the time of reception of the message whose states are passed on next."""
+        self._came_ns = taken.received_ns
+
+    def _pass_on(self, body_name: str, state: KnownState) -> None:
+        self._states.add(body_name, state_of(state), came_ns=self._came_ns)
 
     def take_messages(self) -> None:
         """Take all waiting states, and then the events, so that states are drawn before a later response."""
@@ -272,36 +279,6 @@ class Visualizer(InboxNode):
             if kind not in self._told:
                 self._told.add(kind)
                 self.get_logger().warning(f"cannot draw {kind} (reported once):\n{traceback.format_exc()}")
-
-
-class _HandedOn(StateStore):
-    """Passes all states on to be drawn."""
-
-    def __init__(self, states: StatesInTurn) -> None:
-        super().__init__(history=0.0, timeout=0.0)
-        self._states = states
-        self._came_ns = 0
-
-    def note(self, topic: str, taken: Taken) -> None:  # noqa: ARG002  of all topics alike
-        """Store the time of reception of the message whose states are passed on next."""
-        self._came_ns = taken.received_ns
-
-    def add(self, body_name: str, state: KnownState, *, now_ns: int | None = None) -> None:  # noqa: ARG002
-        """Pass on a state whatever its stamp, since those of a log are of another clock."""
-        self._states.add(body_name, state_of(state), came_ns=self._came_ns)
-
-    def add_unread(
-        self,
-        body_name: str,
-        stamp_ns: int,  # noqa: ARG002  the state has it too
-        read: Callable[[], KnownState | None],
-        *,
-        now_ns: int | None = None,  # noqa: ARG002  as above
-    ) -> None:
-        """Decode and pass on a state, since all are drawn."""
-        state = read()
-        if state is not None:
-            self.add(body_name, state)
 
 
 def _scenery(parameters: ServerParameters) -> object:
