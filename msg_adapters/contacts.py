@@ -46,6 +46,7 @@ def contacts_from_msg(msg: ContactSetMsg) -> ContactSet:
             frictions=np.asarray(msg.frictions),
             restitutions=np.asarray(msg.restitutions) if msg.restitutions or n == 0 else None,
             surfaces=tuple(msg.surface_names),
+            static_frictions=np.asarray(msg.static_frictions) if msg.static_frictions else None,
             body_curvatures=body_curvatures,
             surface_curvatures=surface_curvatures,
             **{
@@ -64,6 +65,8 @@ def contacts_to_msg(contacts: ContactSet, *, into: ContactSetMsg | None = None) 
     msg.frictions = flat(contacts.frictions)
     if contacts.restitutions is not None:
         msg.restitutions = flat(contacts.restitutions)
+    if contacts.static_frictions is not None:
+        msg.static_frictions = flat(contacts.static_frictions)
     msg.surface_names = list(contacts.surfaces)
     if contacts.surfaces_move:
         for field in _MOTION:

@@ -38,6 +38,7 @@ CONTACT_FIELDS: Final = {
     "p_WC_W": "contacts.positions",
     "normals_W": "contacts.normals",
     "frictions": "contacts.frictions",
+    "static_frictions": "contacts.static_frictions",
     "restitutions": "contacts.restitutions",
     "surfaces": "contacts.surface_names",
     "body_curvatures": "contacts.body_curvatures",

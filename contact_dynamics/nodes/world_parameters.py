@@ -23,7 +23,13 @@ from contact_dynamics.shapes import convex as convex_shape
 from contact_dynamics.shapes.concavity import warn_if_concave
 from contact_dynamics.shapes.convex import NO_SHAPE, ConvexShape
 from contact_dynamics.shapes.obstacle import Obstacle
-from contact_dynamics.validation import check_array, check_not_negative, check_positive, check_unit
+from contact_dynamics.validation import (
+    check_array,
+    check_not_negative,
+    check_positive,
+    check_static,
+    check_unit,
+)
 from contact_dynamics.world import Body, Surface
 
 if TYPE_CHECKING:
@@ -308,6 +314,11 @@ def _read_surface(source: ParameterSource, name: str) -> Surface | Obstacle:
         pose_names=("point", "orientation"),
     )
     friction = source.value(f"{key}.friction", float, "Coefficient of Coulomb friction with any body, >= 0.")
+    static_friction = source.value(
+        f"{key}.static_friction",
+        0.0,
+        "Coefficient of static friction, >= friction, of bodies that stick. Zero: the same as friction.",
+    )
     restitution = source.value(
         f"{key}.restitution", float, "Coefficient of restitution with any body, 0 to 1."
     )
@@ -336,6 +347,8 @@ def _read_surface(source: ParameterSource, name: str) -> Surface | Obstacle:
 
     def build() -> Surface | Obstacle:
         check_friction("friction", friction)
+        check_friction("static_friction", static_friction)
+        static = check_static(static_friction or None, friction)
         check_friction("lasting_factor", lasting_factor * max(friction, 1.0))
         solid = shape.shape_F()
         if not solid.is_empty:
@@ -348,7 +361,13 @@ def _read_surface(source: ParameterSource, name: str) -> Surface | Obstacle:
                 lasting_factor=(lasting_factor, 1.0),
                 lasting_speed=(lasting_speed, 0.0),
             )
-            return Obstacle(name=name, vertices_W=solid.vertices, friction=friction, restitution=restitution)
+            return Obstacle(
+                name=name,
+                vertices_W=solid.vertices,
+                friction=friction,
+                restitution=restitution,
+                static_friction=static,
+            )
         _check_unread("unless there is a box or vertices", orientation=(shape.orientation, _NOT_TURNED))
         check_place("point", check_array("point", point, (3,)))
         check_vector("velocity", check_array("velocity", velocity, (3,)))
@@ -362,6 +381,7 @@ def _read_surface(source: ParameterSource, name: str) -> Surface | Obstacle:
             lasting_factor=lasting_factor,
             lasting_speed=lasting_speed,
             v_WS_W=velocity,
+            static_friction=static,
         )
         if rate and any(velocity):
             raise InvalidFieldError("velocity", velocity, "zero for a turntable, which turns about its point")

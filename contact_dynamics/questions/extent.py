@@ -86,6 +86,8 @@ def check_contacts(contacts: ContactSet) -> None:
         if (motion := getattr(contacts, name)) is not None:
             check_vector(f"contacts.{name}", motion.ravel())
     check_friction("contacts.frictions", max(contacts.frictions.tolist(), default=0.0))
+    if contacts.static_frictions is not None:
+        check_friction("contacts.static_frictions", max(contacts.static_frictions.tolist(), default=0.0))
 
 
 def check_margin_length(length: float | None) -> None:

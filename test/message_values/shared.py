@@ -112,10 +112,12 @@ def contact_sets(draw: st.DrawFn, count: int | None = None) -> ContactSet:
     n = draw(st.integers(0, 3)) if count is None else count
     curved = n > 0 and draw(flags)
     normals = draw(tuples_of(unit_vectors(), n))
+    frictions = draw(arrays(n, of=st.floats(0.0, 5.0)))
     return ContactSet(
         p_WC_W=draw(arrays(n, 3)),
         normals_W=np.array(normals).reshape(-1, 3),
-        frictions=draw(arrays(n, of=st.floats(0.0, 5.0))),
+        frictions=frictions,
+        static_frictions=frictions + draw(st.floats(0.0, 1.0)) if n > 0 and draw(flags) else None,
         restitutions=draw(arrays(n, of=st.floats(0.0, 1.0))),
         surfaces=draw(tuples_of(texts, n)) if draw(flags) else (),
         body_curvatures=alike(n, draw(positive)) if curved else None,

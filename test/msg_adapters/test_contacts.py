@@ -102,6 +102,8 @@ def test_kinds_alone_and_one_curvature_in_all_directions() -> None:
     ("changes", "words"),
     [
         ({"kinds": [0, 1]}, r"contacts\.kinds must be .*, got 2 kinds"),
+        ({"static_frictions": [9.0] * 2}, r"contacts\.static_frictions must be of shape \(3,\)"),
+        ({"static_frictions": [9.0, 0.0, 9.0]}, r"contacts\.static_frictions\[1\] must be at least "),
         ({"kinds": [0, 1, 3]}, r"contacts\.kinds\[2\]"),
         ({"kinds": [2, 0, 0]}, r"contacts\.body_curvatures must be .*, got 0 numbers"),
         ({"kinds": [2, 0, 0], "body_curvatures": [1.0, 0.0, 0.0]}, r"contacts\.surface_curvatures"),
@@ -127,6 +129,13 @@ def test_what_is_incomplete_or_impossible_is_refused_by_name(changes: dict[str, 
         setattr(msg, field, value)
     with pytest.raises(InvalidFieldError, match=words):
         contacts_from_msg(msg)
+
+
+def test_static_frictions_come_back_as_they_went() -> None:
+    assert not contacts_to_msg(contacts()).static_frictions
+    static = contacts().frictions + np.array([0.0, 0.1, 0.2])
+    back = contacts_from_msg(contacts_to_msg(replace(contacts(), static_frictions=static)))
+    np.testing.assert_array_equal(back.static_frictions, static)
 
 
 MOTION = ("surface_velocities", "surface_angular_velocities", "surface_accelerations")

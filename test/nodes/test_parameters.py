@@ -323,6 +323,8 @@ WRONG = [
     ),
     (floor(lasting_factor=-1.0), "surface.floor.lasting_factor must be ..., got -1.0"),
     (floor(lasting_factor=1e20), "surface.floor.lasting_factor must be at..., got 1e+20"),
+    (floor(static_friction=-0.1), "surface.floor.static_friction must be at least friction..., got -0.1"),
+    (floor(static_friction=1e20), "surface.floor.static_friction must be at most..., got 1e+20"),
     (floor(lasting_speed=-0.1), "surface.floor.lasting_speed must be >= 0..., got -0.1"),
     (floor(normal=[0.0, 0.0, 2.0]), "surface.floor.normal must be ..., got [0.0, 0.0, 2.0] of norm 2"),
     (floor(point=[0.0, 0.0]), "surface.floor.point must be ..., got shape (2,)"),
