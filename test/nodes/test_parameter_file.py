@@ -37,10 +37,20 @@ def test_the_commented_configuration_is_read_as_it_says() -> None:
     (brick,), (floor,) = parameters.world.bodies, parameters.world.surfaces
     assert (brick.name, brick.mass_properties.mass, len(brick.vertices_B)) == ("brick", 0.4, 8)
     assert (floor.name, floor.friction, floor.restitution) == ("floor", 0.3, 0.45)
-    assert floor.lasting_factor == 1.0
+    assert (floor.lasting_factor, floor.static_friction) == (1.0, None)
     (states,) = parameters.sources
     assert [topic.name for source in states.sources for topic in source.topics] == ["/brick/odometry"]
     assert parameters.defaults.velocity_tolerance == 1e-9
+
+
+@pytest.mark.parametrize("shape", ["", "    surface.floor.box: [1.0, 1.0, 0.1]\n"])
+def test_a_surface_may_have_static_friction(tmp_path: Path, shape: str) -> None:
+    file = tmp_path / "server.yaml"
+    text = (ROOT / "config" / "server.yaml").read_text(encoding="utf-8")
+    text = text.replace("surface.floor.static_friction: 0.0", "surface.floor.static_friction: 0.4")
+    file.write_text(text.replace("    surface.floor.box: [0.0]\n", shape), encoding="utf-8")
+    (floor,) = read_server_parameters(ParameterFile(file)).world.surfaces
+    assert (floor.friction, floor.static_friction) == (0.3, 0.4)
 
 
 def test_nested_names_are_joined_and_the_nodes_own_values_count_more(tmp_path: Path) -> None:

@@ -78,6 +78,8 @@ CONTEXT = Context(world=PARAMETERS.world, defaults=PARAMETERS.defaults)
   on a cart that brakes: [PredictContactMode, {<<: *pushed, contact_source: 1, contacts: {<<: *feet,
     surface_velocities: [2.0, 0.0, 0.0, 2.0, 0.0, 0.0],
     surface_accelerations: [-9.0, 0.0, 0.0, -9.0, 0.0, 0.0]}, problem: 2}]
+  with static friction: [PredictContactMode, {<<: *pushed, contact_source: 1,
+    contacts: {<<: *feet, static_frictions: [0.6, 0.2]}, problem: 2}]
   settled by an impact: [PredictContactMode, {<<: [*rod, *flies, *on_feet], problem: 2, include_impact: true}]
   uncertain contacts: [PredictContactMode, {<<: [*rod, *on_right], state_source: 1,
     state: {pose: {position: {z: 0.8}}}, problem: 2, uncertainty_frictions: [0.1],

@@ -54,6 +54,20 @@ def test_contacts_are_found_from_the_shape() -> None:
         answer(AT_REST, replace(CONTEXT, world=World(bodies=(CUBE,))))
 
 
+def test_a_surface_with_static_friction_may_hold_what_it_could_let_slide() -> None:
+    (floor,) = CONTEXT.world.surfaces
+    world = replace(CONTEXT.world, surfaces=(replace(floor, static_friction=1.5 * FRICTION),))
+    pushed = replace(AT_REST, force_W=[1.2 * HOLDS, 0, 0], include_statics=True)
+    found = answer(pushed, replace(CONTEXT, world=world))
+    assert found.verdict == ModeVerdict.INDETERMINATE
+    assert {mode.mode for mode in found.modes} == {"ffff", "rrrr"}
+    assert found.contacts.static_frictions == pytest.approx([1.5 * FRICTION] * 4)
+    assert found.statics is not None
+    assert found.statics.equilibrium == Certainty.POSSIBLE
+    with pytest.raises(InvalidFieldError, match=r"contacts.static_frictions must be at most"):
+        answer(replace(pushed, contacts=replace(found.contacts, static_frictions=[1e20] * 4)), CONTEXT)
+
+
 @pytest.mark.parametrize("exponent", [-30, -100, -139, -141, -155, -162, -200, -300, -318])
 @pytest.mark.parametrize("problem", Problem)
 def test_a_weight_of_any_size_is_answered(problem: Problem, exponent: int) -> None:
