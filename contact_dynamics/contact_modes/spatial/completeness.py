@@ -11,7 +11,8 @@ is no mode in the set. Otherwise the set is parted:
 - In a flat, the common motions are parted into regions, and where a contact may slide any way in a narrow
   region, because it may stick there too, its directions of sliding are parted.
 
-This ends at solutions. One motion may exclude all others with the same contacts staying (`only_motion`).
+This ends at solutions. One motion may exclude all others with the same contacts staying (`only_motion`), but
+for those in which a contact sticks that has more friction then.
 Otherwise Newton's method finds a solution in the set, and bounds on the derivatives around it say in which
 range of directions there is no other one (`alone_within`). Where bodies can move in one direction only,
 round cones decide (`shared_loads`). What is left over when ranges are narrow is undecided.
