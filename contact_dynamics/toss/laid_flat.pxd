@@ -33,7 +33,7 @@ cpdef laid_flat(Solid solid, list y, dict faces, law)
                soonest=cython.double, rate=cython.double, landing=cython.double, first=cython.int, k=cython.int,
                count=cython.int, sinking=cython.double, rise=cython.double, x=cython.double, y=cython.double,
                z=cython.double, numbers="double[::1]")
-cdef double _chatter(Solid solid, Pose pose, int surface, list corners, PlanarStrike strike) except -1.0
+cdef double _chatter(Solid solid, Pose pose, int surface, Face face, PlanarStrike strike) except -1.0
 @cython.locals(flat=Flat, p=cython.double, rate=cython.double, across=(double, double, double))
 cdef void _bounce(Solid solid, Pose pose, int surface, int corner, PlanarStrike strike, double least) except *
 cdef (double, double, double) _turned_by(Pose pose, (double, double, double) arm, (double, double, double) impulse) noexcept

@@ -123,22 +123,27 @@ def laid_flat(solid: Solid, y: Numbers, faces: Faces, law: RestitutionLaw) -> tu
         share * along[2],
         *flush[10:],
     ]
-    return laid, _chatter(solid, pose, near[0][0], face.corners, PlanarStrike(law))
+    return laid, _chatter(solid, pose, near[0][0], face, PlanarStrike(law))
 
 
-def _chatter(solid: Solid, pose: Pose, surface: int, corners: list[int], strike: PlanarStrike) -> float:
+def _chatter(solid: Solid, pose: Pose, surface: int, face: Face, strike: PlanarStrike) -> float:
     """Return the time, s, until the corners of a face that rattles on a plane have stopped.
 
-    The strikes change the velocities of ``pose``.
+    The strikes change the velocities of ``pose``. Corners that are not exactly on the face are moved onto it,
+    because otherwise one of four would never come down.
     """
-    flat = solid.flats[surface]
+    flat, corners = solid.flats[surface], face.corners
     n, pull = flat.normal, -vec.dot(solid.gravity, flat.normal)
-    count = len(corners)
+    count, least = len(corners), 0.0
     numbers = array("d", bytes(40 * count))  # moment of the normal, height and normal velocity of each
     for k in range(count):
         moment = vec.cross(pose.arm(surface, corners[k]), n)
         numbers[5 * k], numbers[5 * k + 1], numbers[5 * k + 2] = moment
-        numbers[5 * k + 3] = max(pose.height(surface, corners[k]), 0.0)
+        above_face = vec.dot(face.up, solid.corner(corners[k])) + face.high
+        numbers[5 * k + 3] = pose.height(surface, corners[k]) - above_face
+        least = min(least, numbers[5 * k + 3])
+    for k in range(3, 5 * count, 5):
+        numbers[k] -= least
     now, begun = 0.0, 0.0
     for _ in range(_MAX_BOUNCES):
         first, soonest, fastest, sinking = 0, math.inf, 0.0, vec.dot(pose.v, n)
