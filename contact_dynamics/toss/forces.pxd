@@ -31,6 +31,14 @@ cdef class Equations:
     cdef void respond(self, double per_mass) noexcept
     @cython.locals(t=cython.double[::1], m=cython.double[::1])
     cdef int solve(self, double per_mass) except -1
+    @cython.locals(row=cython.int, found=cython.int, k=cython.int, enough=cython.double, largest=cython.double,
+                   square=cython.double)
+    cdef int _solve_many(self) noexcept
+    @cython.locals(n=cython.int, j=cython.int, total=cython.double)
+    cdef double _product(self, int i, int k) noexcept
+    @cython.locals(t=cython.double[::1], m=cython.double[::1], n=cython.int, i=cython.int, j=cython.int,
+                   wanted=cython.double, along=cython.double)
+    cdef void _meet(self, int row, double length) noexcept
     cdef double size(self, int k) noexcept
     cdef (double, double, double) summed(self, (double, double, double) start, int first, double factor) noexcept
 

@@ -123,14 +123,48 @@ class Equations:
         return self._solve_many()
 
     def _solve_many(self) -> int:
-        n = self.count
-        matrix = np.array(self.matrix[: n * n]).reshape(n, n)
-        wanted = np.array([self.table[_WIDTH * k + _WANTED] for k in range(n)])
-        sizes, _, rank, _ = np.linalg.lstsq(matrix, wanted, rcond=SAME_FORCES)
-        found = sizes.tolist()
-        for k in range(n):
-            self.table[_WIDTH * k + _SIZE] = found[k]
-        return n - int(rank)
+        """Solve by Gram and Schmidt's method on the rows of the matrix, the largest remaining one first.
+
+        What is along no row remains zero, so that the sizes are the least ones. The rows are lost.
+        """
+        enough = 0.0
+        for k in range(self.count):
+            self.table[_WIDTH * k + _SIZE] = 0.0
+        for found in range(self.count):
+            row, largest = 0, 0.0
+            for k in range(self.count):
+                square = self._product(k, k)
+                if square > largest:
+                    row, largest = k, square
+            if largest <= enough:
+                return self.count - found
+            if found == 0:
+                enough = SAME_FORCES * SAME_FORCES * largest
+            self._meet(row, math.sqrt(largest))
+        return 0
+
+    def _product(self, i: int, k: int) -> float:
+        """Return the inner product of two rows of the matrix."""
+        n, total = self.count, 0.0
+        for j in range(n):
+            total += self.matrix[i * n + j] * self.matrix[k * n + j]
+        return total
+
+    def _meet(self, row: int, length: float) -> None:
+        """Change the sizes along a row of this length until it is met, and make other rows normal to it."""
+        t, m, n = self.table, self.matrix, self.count
+        wanted = t[_WIDTH * row + _WANTED] / length
+        for j in range(n):
+            m[row * n + j] /= length
+            t[_WIDTH * j + _SIZE] += wanted * m[row * n + j]
+        for i in range(n):
+            along = self._product(i, row)
+            if i != row:
+                t[_WIDTH * i + _WANTED] -= along * wanted
+                for j in range(n):
+                    m[i * n + j] -= along * m[row * n + j]
+        for j in range(n):
+            m[row * n + j] = 0.0
 
     def size(self, k: int) -> float:
         """Return the size of a force."""
