@@ -402,7 +402,8 @@ class Simulation(History):
             return touching
         self.y, rattles = flat
         self.quiet = max(self.quiet, self.now + rattles)
-        self.laid, self.slow = self.laid + 1, math.inf
+        # It rattles again only after another strike.
+        self.laid, self.flat_after, self.slow = self.laid + 1, self.struck + 1, math.inf
         return self.touching_now(STILL_TOUCHING)
 
     def _rests(self, touching: list[Touch]) -> bool:
