@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 import math
-from math import dist
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
@@ -135,7 +134,7 @@ class History:
             apart = solid.reach
             for s, k in found:
                 if s == flat:
-                    apart = min(apart, dist(solid.corner(corner), solid.corner(k)))
+                    apart = min(apart, vec.norm(vec.plus(solid.corner(corner), -1.0, solid.corner(k))))
             if height <= DISTANCE_TOLERANCE * min(1.0, apart / (NEAR_CORNERS * solid.reach)):
                 found.append((flat, corner))
         return [touch for _, touch in listed if touch in found]

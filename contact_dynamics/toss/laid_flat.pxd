@@ -13,7 +13,7 @@ cdef extern from *:
     cpdef enum:
         SOURCE_CRC
 
-cdef double FACE_ROUNDING, _LEAST_REBOUND, _LEFT
+cdef double FACE_ROUNDING, _INFINITE, _LEAST_REBOUND, _LEFT
 cdef int _MAX_BOUNCES
 
 
@@ -31,7 +31,7 @@ cdef class Face:
 cpdef laid_flat(Solid solid, list y, dict faces, law)
 @cython.locals(flat=Flat, pull=cython.double, now=cython.double, begun=cython.double, fastest=cython.double,
                soonest=cython.double, rate=cython.double, landing=cython.double, first=cython.int, k=cython.int,
-               count=cython.int, sinking=cython.double, rise=cython.double, x=cython.double, y=cython.double,
+               count=cython.int, sinking=cython.double, least=cython.double, above_face=cython.double, rise=cython.double, x=cython.double, y=cython.double,
                z=cython.double, numbers="double[::1]")
 cdef double _chatter(Solid solid, Pose pose, int surface, Face face, PlanarStrike strike) except -1.0
 @cython.locals(flat=Flat, p=cython.double, rate=cython.double, across=(double, double, double))

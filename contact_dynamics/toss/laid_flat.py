@@ -51,6 +51,8 @@ _LEFT: Final = 0.05
 """Speed of the fastest corner after these bounces, relative to that before them. The rest takes this share of
 the time of all bounces, because bounces at all speeds are alike."""
 
+_INFINITE: Final = math.inf
+
 _LEAST_REBOUND: Final = 0.05
 """Smallest rebound, relative to the speed of the fastest corner, so that a corner that stays on the plane
 strikes a few times instead of infinitely often."""
@@ -82,7 +84,7 @@ def laid_flat(solid: Solid, y: Numbers, faces: Faces, law: RestitutionLaw) -> tu
     the faces of this body, and is extended.
     """
     low = NEARLY_FLUSH * solid.reach
-    near = [touch for _, touch in low_corners(solid, y, low, math.inf)]
+    near = [touch for _, touch in low_corners(solid, y, low, _INFINITE)]
     if not 3 <= len(near) <= MAX_CORNERS or near[0][0] != near[len(near) - 1][0]:  # sorted by plane
         return None
     flat = solid.flats[near[0][0]]
@@ -146,7 +148,7 @@ def _chatter(solid: Solid, pose: Pose, surface: int, face: Face, strike: PlanarS
         numbers[k] -= least
     now, begun = 0.0, 0.0
     for _ in range(_MAX_BOUNCES):
-        first, soonest, fastest, sinking = 0, math.inf, 0.0, vec.dot(pose.v, n)
+        first, soonest, fastest, sinking = 0, _INFINITE, 0.0, vec.dot(pose.v, n)
         x, y, z = pose.w
         for k in range(0, 5 * count, 5):
             rate = sinking + x * numbers[k] + y * numbers[k + 1] + z * numbers[k + 2]
@@ -259,7 +261,7 @@ def _tipping(up: Vector3, high: float, face: list[Vector3]) -> float:
     """Return the smallest rise of the centre of mass, m, when the body tips over an edge of a face."""
     one, other = tangents(up)
     turn = sorted(face, key=lambda corner: math.atan2(vec.dot(corner, other), vec.dot(corner, one)))
-    least = math.inf
+    least = _INFINITE
     for a, b in zip(turn, [*turn[1:], turn[0]], strict=True):
         side = vec.norm(_less(b, a))
         # The distance of the edge from the projection of the centre of mass along the normal.

@@ -156,10 +156,10 @@ class Simulation(History):
             if self._lingers():
                 touching = self._pass_over()
             rates = approaches(self.solid, self.y, touching)
-            if min(rates, default=0.0) < -STRIKES:
+            if rates and min(rates) < -STRIKES:
                 touching = self._strike(touching, rates)
                 continue
-            touching = [touch for touch, rate in zip(touching, rates, strict=True) if rate <= STILL_TOUCHING]
+            touching = [touching[k] for k in range(len(rates)) if rates[k] <= STILL_TOUCHING]
             if touching and self._rests(touching):
                 return TossEnd.RESTS if self.now <= self.horizon else TossEnd.HORIZON
             touching = self._go_on(touching)

@@ -11,7 +11,7 @@ cdef extern from *:
     cpdef enum:
         SOURCE_CRC
 
-cdef double SLIDING_DIRECTION_SPEED
+cdef double SLIDING_DIRECTION_SPEED, _INFINITE
 
 
 @cython.final

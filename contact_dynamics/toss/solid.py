@@ -14,7 +14,7 @@ from __future__ import annotations
 import math
 from array import array
 from copy import copy
-from typing import TYPE_CHECKING, Any, TypeAlias
+from typing import TYPE_CHECKING, Any, Final, TypeAlias
 
 import numpy as np
 
@@ -43,6 +43,8 @@ Touch: TypeAlias = tuple[int, int]
 
 Numbers: TypeAlias = "list[float]"
 """A state of 13 numbers: position, quaternion x y z w, velocity and angular velocity, world axes, SI."""
+
+_INFINITE: Final = math.inf
 
 
 class Flat:
@@ -508,14 +510,14 @@ class Above:
         self.count = count
         self.heights = array("d", bytes(16 * self.count))
         self.rates = self.heights[self.count :]
-        self.least = math.inf
+        self.least = _INFINITE
         self.y = [0.0] * 13
 
     def take(self, solid: Solid, y: Numbers) -> None:
         """Compute heights and rates from 13 numbers, whose quaternion need not be unit."""
         a, b, c, d, e, f, g, h, i = rows_of(y[3], y[4], y[5], y[6])
         w_x, w_y, w_z = y[10], y[11], y[12]
-        k, least = 0, math.inf
+        k, least = 0, _INFINITE
         for s in range(len(solid.flats)):
             flat = solid.flats[s]
             n_x, n_y, n_z = flat.normal
