@@ -41,7 +41,14 @@ from contact_dynamics.questions.plane_of_motion import (
     planar_problem_of,
     several_in_plane,
 )
-from contact_dynamics.questions.subject import NamedState, Subject, at_stamp, covariance_of, subject_of
+from contact_dynamics.questions.subject import (
+    NamedState,
+    Subject,
+    at_stamp,
+    check_different,
+    covariance_of,
+    subject_of,
+)
 from contact_dynamics.questions.touching import (
     check_has_shape,
     contacts_of,
@@ -378,6 +385,7 @@ def _strike_of(question: ImpactQuestion, context: Context) -> _Strike:
     subject = subject_of(question.body, question.state, context)
     other = None
     if question.other is not None:
+        check_different((question.body, question.other), (question.state, question.other_state))
         source = at_stamp(question.other_state, subject.state.stamp_ns)
         other = subject_of(question.other, source, context)
     for one in (subject, other):

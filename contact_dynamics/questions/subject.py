@@ -135,14 +135,24 @@ def at_one_time(
     """Return the sources of several bodies' states, with the latest states replaced by those at one time.
 
     It is the stamp of the oldest of them, so that no state is extrapolated: bodies in contact do not move
-    freely. The errors are those of `subject_of`.
+    freely. The errors are those of `subject_of`,
+    and of `check_different`.
     """
+    check_different(bodies, sources)
     newest = [
         subject_of(body, source, context).state.stamp_ns
         for body, source in zip(bodies, sources, strict=True)
         if isinstance(source, PublishedState) and source.stamp_ns is None
     ]
     return tuple(at_stamp(source, min(newest, default=0)) for source in sources)
+
+
+def check_different(bodies: Sequence[Body | str], sources: Sequence[StateSource]) -> None:
+    """Raise `InvalidFieldError` for a body that is named twice with its published state: it is not two."""
+    pairs = zip(bodies, sources, strict=True)
+    names = [getattr(body, "name", body) for body, source in pairs if isinstance(source, PublishedState)]
+    if len(set(names)) < len(names):
+        raise InvalidFieldError("body_name", names, "different, or have explicit states")
 
 
 def subject_of(

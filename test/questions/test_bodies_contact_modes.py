@@ -28,6 +28,7 @@ from contact_dynamics.errors import (
 from contact_dynamics.questions import (
     BodiesContactModeQuestion,
     Context,
+    ImpactQuestion,
     PublishedState,
     StateStore,
     UncertainState,
@@ -118,6 +119,19 @@ def test_all_bodies_are_seen_at_the_same_time(source: PublishedState, ms: int) -
         np.testing.assert_allclose(body.state.p_WB_W, at(i, ms).p_WB_W, atol=1e-12)
         assert body.state.stamp_ns == ms * 10**6
     assert same(ask(question, excerpt(question, whole)), found)
+
+
+def test_one_published_body_is_not_two() -> None:
+    """Two bodies of one kind have one name, and then explicit states."""
+    states = published(("lower", STATES[0]))
+    on_top = ContactSet(p_WC_W=[[0, 0, 0.1]], normals_W=[0, 0, 1], frictions=0.5, restitutions=0.0)
+    twice = BodiesContactModeQuestion(bodies=["lower", LOWER], contacts=on_top, pairs=[(0, 1)])
+    hit = ImpactQuestion(body="lower", other="lower", contacts=on_top)
+    for question in (twice, hit):
+        with pytest.raises(InvalidFieldError, match=r"^body_name must be different, or have explicit states"):
+            ask(question, Context(world=WORLD, states=states))
+    above = replace(STATES[0], p_WB_W=[0, 0, 0.15])
+    ask(replace(twice, states=(above, STATES[0])), Context(world=WORLD))
 
 
 def test_without_gravity_nothing_presses() -> None:
