@@ -148,15 +148,19 @@ def answer(question: ImpactQuestion, context: Context | None = None) -> ImpactAn
 
 
 def _outside(question: ImpactQuestion, strike: _Strike) -> tuple[str, ...]:
-    """Return warnings of stated contacts that are outside of the body's shape."""
-    if question.contacts is None:
-        return ()
-    return outside_shape(
-        strike.subject.body,
-        points_W=strike.contacts.p_WC_W,
-        p_WB_W=strike.subject.state.p_WB_W,
-        R_WB=strike.subject.state.R_WB,
-        distance_tolerance=strike.distance_tolerance,
+    """Return warnings of stated contacts that are outside of the shape of a body."""
+    subjects = (strike.subject, strike.other) if question.contacts is not None else ()
+    return tuple(
+        text
+        for subject in subjects
+        if subject is not None
+        for text in outside_shape(
+            subject.body,
+            points_W=strike.contacts.p_WC_W,
+            p_WB_W=subject.state.p_WB_W,
+            R_WB=subject.state.R_WB,
+            distance_tolerance=strike.distance_tolerance,
+        )
     )
 
 

@@ -101,6 +101,16 @@ def test_a_body_that_an_impact_drives_into_what_it_touches_is_a_warning() -> Non
     assert impact_questions.answer(lifted, KNOWN).warnings == ()
 
 
+def test_a_contact_off_the_shape_of_the_second_body_is_a_warning() -> None:
+    ball = Body.sphere(0.02, 0.37, name="ball")
+    above = ContactSet(p_WC_W=[[0, 0, 1.11]], normals_W=[0, 0, 1], frictions=0.3, restitutions=0.5)
+    dropped = BodyState(p_WB_W=[0, 0, 1.13], q_WB=[0, 0, 0, 1], v_WB_W=[0, 0, -1])
+    still = BodyState(p_WB_W=[0, 0, 1.05], q_WB=[0, 0, 0, 1])
+    question = ImpactQuestion(body=ball, state=dropped, other="cube", other_state=still, contacts=above)
+    answer = impact_questions.answer(question, KNOWN)
+    assert answer.warnings == ("contact 0 is 0.01 m outside of the shape of 'cube'",)
+
+
 def test_an_impact_at_one_of_the_contacts_is_a_warning() -> None:
     """A cube that slides on the floor and hits a wall with its upper edge would turn into the floor."""
     wall = Surface(name="wall", p_WS_W=[0.05, 0, 0], normal_W=[-1, 0, 0], friction=0.0, restitution=0.5)
