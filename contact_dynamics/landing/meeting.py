@@ -6,7 +6,8 @@ body, the plane moves at the mean of the speeds at which the nearest points of b
 stay on their sides for a time that bounds on their accelerations guarantee (`acceleration_bounds`). The
 search goes to the end of that time, takes the plane that separates best then, and repeats, as that for an
 obstacle does (`earliest`). It finds a touch within twice `GRAZING_DEPTH`, and misses no deeper one. Bodies of
-several convex parts meet when the first pair of parts does.
+several convex parts meet when the first pair of parts does. While the balls around two parts are far apart,
+the plane is at right angles to the line between the centres.
 
 A shape over which a ball rolls counts as its hull, and its radius is added to that of the other.
 
@@ -27,7 +28,7 @@ from contact_dynamics.contact.found import check_has_shape
 from contact_dynamics.contact.pairs import check_one_time
 from contact_dynamics.contact.touches import Pair, Site, site_of, touches_between
 from contact_dynamics.errors import InvalidFieldError, NotSupportedError
-from contact_dynamics.landing.acceleration_bounds import all_free_for, bounds_of
+from contact_dynamics.landing.acceleration_bounds import all_free_for, bounds_of, free_for
 from contact_dynamics.landing.earliest import Landing
 from contact_dynamics.landing.search_work import OBSTACLE_STEP, SearchWork
 from contact_dynamics.rotations.one import rotation_matrix
@@ -189,6 +190,11 @@ class _PairOfParts:
         self.hull, self.rounding = _Hull(name, features_of(theirs)), theirs.rounding
         self.corners, self.theirs = part.vertices, theirs.vertices
         self.arms, self.their_arms = (np.linalg.norm(each, axis=1) for each in (self.corners, self.theirs))
+        self.center, self.their_center = self.corners.mean(axis=0), self.theirs.mean(axis=0)
+        self.radius = self.shape.rounding + float(  # m, the sum of those of balls around both parts
+            np.linalg.norm(self.corners - self.center, axis=1).max()
+            + np.linalg.norm(self.theirs - self.their_center, axis=1).max()
+        )
 
     @property
     def both(self) -> Pair:
@@ -210,6 +216,13 @@ class _Bodies:
             for part in body.shape.convex_parts
             for theirs in other.shape.convex_parts
         ]
+        self.centers = np.array([pair.center for pair in self.pairs])
+        self.their_centers = np.array([pair.their_center for pair in self.pairs])
+        self.radii = np.array([pair.radius for pair in self.pairs])
+        turning, their_turning = (bounds_of(each, np.eye(3)[0])(0.0).turning for each in (motion, others))
+        # m/s^2, the largest accelerations of the centres towards each other by the rotations of both bodies
+        self.pulls = turning * np.linalg.norm(self.centers, axis=1)
+        self.pulls += their_turning * np.linalg.norm(self.their_centers, axis=1)
 
     def at(self, seconds: float) -> _Relative:
         """Return both bodies at a time, s."""
@@ -230,18 +243,15 @@ class _Bodies:
     ) -> tuple[float, _Touching] | None:
         """Return when they meet, s, and where."""
         work, now = SearchWork(), 0.0
-        due = [now] * len(self.pairs)  # until these times, pairs of parts cannot touch
+        due = np.zeros(len(self.pairs))  # s. Until these times, pairs of parts cannot touch.
         for _ in range(MAX_STEPS * len(self.pairs)):
-            at, pairs = self.at(now), [i for i, time in enumerate(due) if time <= now]
-            work.spend(OBSTACLE_STEP * len(pairs), now)
-            sites = {i: self.pairs[i].site(at) for i in pairs}
+            at = self.at(now)
+            near = self._near_pairs(at, now, due) if len(due) > 1 else [0] * int(due[0] <= now)
+            work.spend(OBSTACLE_STEP * len(near) + 1, now)
+            sites = {i: self.pairs[i].site(at) for i in near}
             gap = min((site.gap for site in sites.values()), default=math.inf)
-            if now == 0.0 and gap < -tolerance:
-                raise InvalidFieldError(
-                    "other_state",
-                    f"{self.other.name!r} {-gap:.6g} m deep in {self.body.name!r}",
-                    f"at most {tolerance:g} m deep (distance_tolerance)",
-                )
+            if now == 0.0:
+                self._check_depth(-gap, tolerance)
             fastest = 0.0
             # At the beginning, points within the tolerance touch. Later, the search comes as near as it can.
             if gap <= (tolerance if now == 0.0 else 2.0 * GRAZING_DEPTH):
@@ -260,11 +270,35 @@ class _Bodies:
                 return None
             for i, site in sites.items():
                 due[i] = now + self._free_for(self.pairs[i], at, site, fastest)
-            now = min(*due, horizon)
+            now = min(float(due.min()), horizon)
         message = (
             f"other: the bodies must meet or pass each other, got bodies that stay close until {now:g} s"
         )
         raise NotSupportedError(message)
+
+    def _check_depth(self, depth: float, tolerance: float) -> None:
+        if depth > tolerance:
+            raise InvalidFieldError(
+                "other_state",
+                f"{self.other.name!r} {depth:.6g} m deep in {self.body.name!r}",
+                f"at most {tolerance:g} m deep (distance_tolerance)",
+            )
+
+    def _near_pairs(self, at: _Relative, now: float, due: FloatArray) -> list[int]:
+        """Return the pairs of parts that are due and closer than their sizes, and put the others off."""
+        pairs = np.flatnonzero(due <= now)
+        arms, their_arms = self.centers[pairs] @ at.R.T, self.their_centers[pairs] @ at.R_other.T
+        apart = at.p + arms - their_arms
+        distances = np.linalg.norm(apart, axis=1)
+        is_far = distances > 2.0 * self.radii[pairs]
+        normals = apart[is_far] / distances[is_far, None]
+        velocities = at.v + np.cross(at.w, arms[is_far]) - np.cross(at.w_other, their_arms[is_far])
+        rates = np.einsum("ni,ni->n", velocities, normals)
+        pulls = self.pulls[pairs[is_far]] - normals @ (self.motion.gravity_W - self.others.gravity_W)
+        gaps = distances[is_far] - self.radii[pairs[is_far]]
+        due[pairs[is_far]] = now + np.array([*map(free_for, gaps.tolist(), rates.tolist(), pulls.tolist())])
+        near: list[int] = pairs[~is_far].tolist()
+        return near
 
     def _free_for(self, pair: _PairOfParts, at: _Relative, site: Site, leaving: float) -> float:
         """Return for how long, s, parts cannot touch, or separate at the speed ``leaving``, m/s."""
@@ -292,7 +326,9 @@ class _Bodies:
         return mine.fall + theirs.fall + pair.arms * mine.turning, pair.their_arms * theirs.turning
 
     def _touching(self, at: _Relative, tolerance: float) -> _Touching:
-        pairs = [pair.both for pair in self.pairs]
+        apart = at.p + self.centers @ at.R.T - self.their_centers @ at.R_other.T
+        near = np.flatnonzero(np.linalg.norm(apart, axis=1) <= self.radii + tolerance)
+        pairs = [self.pairs[i].both for i in near]
         touches = touches_between(pairs, at.p @ at.R_other, at.R_other.T @ at.R, tolerance)
         normals = np.array([touch.normal_W for touch in touches]).reshape(-1, 3) @ at.R_other.T
         arms = np.array([touch.p_WC_W for touch in touches]).reshape(-1, 3) @ at.R_other.T

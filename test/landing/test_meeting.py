@@ -217,6 +217,26 @@ def test_two_u_shapes_interlock() -> None:
         np.testing.assert_allclose(np.abs(aside.contacts.normals_W[:, 0]), 1.0, atol=1e-12)
 
 
+def test_rings_meet_when_a_pair_of_their_boxes_does() -> None:
+    """Each of the 64 pairs alone is the reference: only parts of rings are left out while far apart."""
+    parts = [
+        box(0.1, 0.05, 0.05).moved(
+            [0.2 * math.cos(t), 0.2 * math.sin(t), 0], [0, 0, math.sin(t / 2), math.cos(t / 2)]
+        )
+        for t in np.arange(8) * math.pi / 4
+    ]
+    for spin in (0.0, 3.0, 20.0):
+        one, other = at([1, 0, 0], [-2, 0, 0], [spin, 1, 2]), at([0, 0.05, 0.02], [0, 0, 0], [1, spin, -2])
+        whole = cd.next_meeting(of_shape(union(parts)), one, of_shape(union(parts)), other, **PAIR)
+        assert whole is not None
+        alone = [
+            cd.next_meeting(of_shape(mine), one, of_shape(theirs), other, horizon=0.5, **PAIR)
+            for mine in parts
+            for theirs in parts
+        ]
+        assert whole.seconds == pytest.approx(min(each.seconds for each in alone if each), abs=1e-9)
+
+
 @seeds(range(6), slow=range(6, 300))
 def test_divided_bodies_meet_as_whole_ones(seed: int) -> None:
     """Also at seams, which meet in every third draw, and in any order of the parts and the bodies."""
