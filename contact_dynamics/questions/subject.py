@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import itertools
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from functools import lru_cache
 from typing import TYPE_CHECKING, Final, TypeAlias
@@ -11,7 +12,9 @@ from typing import TYPE_CHECKING, Final, TypeAlias
 import numpy as np
 
 from contact_dynamics.constants import seconds_between
-from contact_dynamics.errors import InvalidFieldError, NotInFlightError
+from contact_dynamics.contact.found import contacts_within
+from contact_dynamics.contact.velocities import relative_velocities
+from contact_dynamics.errors import InvalidFieldError, NotInFlightError, NotSupportedError
 from contact_dynamics.motion.between_states import share_between, state_between
 from contact_dynamics.motion.covariance import covariance_along
 from contact_dynamics.motion.free_fit import FitResult, fit_free_motion
@@ -172,7 +175,7 @@ def subject_of(
         StaleStateError: the latest state is too old, or those around the stamp are too far apart.
         InvalidFieldError: a published state is required and the body has no name; no motion can be fitted to
             the window, or several that differ by whole turns between states; or the stamp is further ahead of
-            the latest state than the default horizon.
+            the latest state than the default horizon, or after it while the body moves on a surface.
         NotInFlightError: an impact lies in the window, or the body rests, slides or is carried.
         TooLargeError: the window has too many states.
     """
@@ -323,6 +326,8 @@ def _moved(subject: Subject, later: KnownState | None, stamp_ns: int | None, con
     if ahead > horizon:
         found = f"{ahead:.9g} s after the latest state"
         raise InvalidFieldError("stamp", found, f"at most {horizon:g} s, the default horizon")
+    if _stays(subject.body, state, ahead, context):
+        return replace(subject, state=replace(state, stamp_ns=stamp_ns))
     motion = free_motion(subject.body.mass_properties, state, gravity_W=context.world.gravity_W)
     covariance = subject.covariance
     if covariance is not None:
@@ -333,6 +338,33 @@ def _moved(subject: Subject, later: KnownState | None, stamp_ns: int | None, con
         state=replace(motion.state_at(ahead), stamp_ns=stamp_ns),
         covariance=covariance,
         by_gravity=(place + ahead * (rate + 0.5 * ahead), rate + ahead),
+    )
+
+
+def _stays(body: Body, state: BodyState, ahead: float, context: Context) -> bool:
+    """Return whether a body rests on a surface in a state, s before the one asked about.
+
+    Raises:
+        InvalidFieldError: it touches a surface and moves, and free motion does not follow.
+    """
+    tolerance, touched = context.defaults.velocity_tolerance, None
+    if not body.shape.is_empty:
+        with suppress(NotSupportedError):  # a rim at the edge of an obstacle
+            touched = contacts_within(
+                body, state, context.world.surfaces, context.defaults.distance_tolerance
+            )
+    if not touched:
+        return False
+    rates = np.einsum("ij,ij->i", relative_velocities(state, touched), touched.normals_W)
+    if (rates > tolerance).all():
+        return False
+    if max(np.abs(state.v_WB_W).max(), np.abs(state.w_WB_W).max()) <= tolerance:
+        return True
+    raise InvalidFieldError(
+        "stamp",
+        f"{ahead:.3g} s after the latest state, in which {body.name!r} moves and touches "
+        f"{touched.surfaces[int(rates.argmin())]!r}",
+        "at most that of the latest state, unless the body flies or rests",
     )
 
 

@@ -20,16 +20,18 @@ from contact_dynamics.motion import ConstantWrench, Drag, Method
 from contact_dynamics.motion.free_fit import fit_free_motion
 from contact_dynamics.questions import (
     AtTimes,
+    ContactModeQuestion,
     Context,
     PublishedState,
     StateStore,
     TumblingQuestion,
     UncertainState,
+    ask,
     tumbling,
 )
 from contact_dynamics.questions.subject import changed_body, subject_of
 from contact_dynamics.rotations.many import matrices_of
-from questions.known_world import CUBE, GRAVITY, MASS, WORLD, state
+from questions.known_world import CUBE, GRAVITY, MASS, SIDE, WORLD, state
 
 MS = 1_000_000  # ns
 V0 = 2.0  # m/s
@@ -86,6 +88,24 @@ def test_a_stamp_in_the_future_follows_the_free_motion() -> None:
         subject_of("cube", PublishedState(stamp_ns=2510 * MS), known)
     with pytest.raises(StaleStateError, match=r"got 0\.600 s"):
         subject_of("cube", PublishedState(stamp_ns=700 * MS), watching(0, now_ns=600 * MS))
+
+
+def test_a_body_in_contact_does_not_fall_after_its_latest_state() -> None:
+    """Free motion would be an impact after 10 microseconds, and a cube in the floor after a millisecond."""
+    lying, ahead = replace(state(0.5 * SIDE), stamp_ns=10 * MS), PublishedState(stamp_ns=15 * MS)
+    known = replace(watching(), world=WORLD)
+    known.states.add("cube", lying)
+    found = subject_of("cube", ahead, known).state
+    assert found.to_dict() == replace(lying, stamp_ns=15 * MS).to_dict()
+    assert [mode.mode for mode in ask(ContactModeQuestion(body="cube", state=ahead), known).modes] == ["ffff"]
+    known.states.add("cube", replace(lying.with_velocities([0.1, 0, 0], [0, 0, 0]), stamp_ns=11 * MS))
+    with pytest.raises(
+        InvalidFieldError, match=r"^stamp must be .* unless the body flies or rests, got 0.004 s"
+    ):
+        subject_of("cube", ahead, known)
+    known.states.add("cube", replace(lying.with_velocities([0, 0, 0.1], [0, 0, 0]), stamp_ns=12 * MS))
+    risen = 0.5 * SIDE + 0.1 * 0.003 - 0.5 * GRAVITY * 0.003**2
+    assert subject_of("cube", ahead, known).state.p_WB_W[2] == pytest.approx(risen, abs=1e-12)
 
 
 def test_a_stamp_in_a_gap_is_refused_and_that_of_a_state_is_not() -> None:
