@@ -23,6 +23,7 @@ from contact_dynamics.contact_modes import (
 )
 from contact_dynamics.plane.types import PlanarBody, PlanarContact, PlanarVelocity, PlanarWrench
 from contact_dynamics.rigid_body.body import BodyState, MassProperties
+from oracles.modes_on_planes import INERTIA, MASS, Made
 
 
 def planar_problem(
@@ -47,6 +48,18 @@ def spatial_problem(
     """Return a problem in space, whose force and torque follow its contacts."""
     return SpatialContactProblem(
         body=body, state=state, contacts=contacts, force_W=force_W, torque_W=torque_W, **others
+    )
+
+
+def problem_of_made(case: Made, **others: Any) -> SpatialContactProblem:
+    """Return the problem of a mode that was made by construction."""
+    return spatial_problem(
+        MassProperties(mass=MASS, I_B=INERTIA),
+        BodyState(p_WB_W=np.zeros(3), q_WB=[0.0, 0.0, 0.0, 1.0], v_WB_W=case.v, w_WB_W=case.w),
+        ContactSet(p_WC_W=case.points, normals_W=case.normals, frictions=case.frictions),
+        case.wrench[:3],
+        case.wrench[3:],
+        **others,
     )
 
 

@@ -21,9 +21,9 @@ from contact_dynamics.contact_modes import (
     statics,
 )
 from contact_dynamics.rigid_body.body import BodyState, MassProperties
-from contact_modes.evidence import balance, pyramid_wrenches, spatial_problem
+from contact_modes.evidence import balance, problem_of_made, pyramid_wrenches, spatial_problem
 from oracles.boxes_nearly_flush import flush
-from oracles.modes_on_planes import INERTIA, MASS, made
+from oracles.modes_on_planes import MASS, made
 from sweeps import seeds
 
 WEIGHT = 20.0
@@ -235,13 +235,7 @@ def test_margins_of_bodies_that_stick_are_between_those_of_fine_pyramids(seed: i
 @seeds(range(6), slow=range(6, 100))
 def test_margins_do_not_depend_on_the_facets(seed: int) -> None:
     case = made(seed, most=4)
-    asked = spatial_problem(
-        MassProperties(mass=MASS, I_B=INERTIA),
-        state(case.v, case.w),
-        ContactSet(p_WC_W=case.points, normals_W=case.normals, frictions=case.frictions),
-        case.wrench[:3],
-        case.wrench[3:],
-    )
+    asked = problem_of_made(case)
     coarse, fine = (mode_margins(replace(asked, friction_facets=facets)) for facets in (3, 24))
     for one, other in zip(coarse, fine, strict=True):
         assert (one.mode, one.verdict_beyond) == (other.mode, other.verdict_beyond)

@@ -9,9 +9,10 @@ from typing import Any
 import numpy as np
 import pytest
 
-from contact_dynamics import BodyState, ContactSet, MassProperties, ModeVerdict, SpatialContactProblem
+from contact_dynamics import ContactSet, ModeVerdict
 from contact_dynamics.contact_modes import ResponseContactProblem, contact_modes
 from contact_dynamics.errors import InvalidFieldError
+from contact_modes.evidence import problem_of_made
 from oracles.modes_of_planar_mechanism import Mechanism, all_modes, drawn
 from oracles.modes_on_planes import INERTIA, MASS, Made, made
 from sweeps import seeds
@@ -97,22 +98,14 @@ def response_of(case: Made) -> tuple[np.ndarray, np.ndarray]:
 @seeds(range(1, 60, 3), slow=range(1, 600))
 def test_w_of_a_body_has_the_modes_of_its_own_problem(seed: int) -> None:
     case = made(seed, most=6)
-    contacts = ContactSet(p_WC_W=case.points, normals_W=case.normals, frictions=case.frictions)
-    own = contact_modes(
-        SpatialContactProblem(
-            body=MassProperties(mass=MASS, I_B=INERTIA),
-            state=BodyState(p_WB_W=np.zeros(3), q_WB=[0, 0, 0, 1], v_WB_W=case.v, w_WB_W=case.w),
-            contacts=contacts,
-            force_W=case.wrench[:3],
-            torque_W=case.wrench[3:],
-        )
-    )
+    alone = problem_of_made(case)
+    own = contact_modes(alone)
     response, free = response_of(case)
     answer = contact_modes(
         ResponseContactProblem(
             inverse_inertia_W=response,
             accelerations_W=free,
-            contacts=contacts,
+            contacts=alone.contacts,
             velocities_W=case.v + np.cross(case.w, case.points),
         )
     )

@@ -12,25 +12,14 @@ from scipy.spatial.transform import Rotation
 
 from contact_dynamics import BodyState, ContactSet, MassProperties, ModeVerdict, SpatialContactProblem
 from contact_dynamics.contact_modes import SpatialModeAnswer, contact_modes
-from contact_modes.evidence import spatial_problem
-from oracles.modes_on_planes import INERTIA, MASS, Made, made, worst_violation
+from contact_modes.evidence import problem_of_made, spatial_problem
+from oracles.modes_on_planes import Made, made, worst_violation
 from sweeps import seeds
 
 NEAR = 0.01  # relative, of accelerations: modes whose directions of sliding differ by 1e-3 rad count as one
 EXACT = 1e-9
 FEW, BLOCK = 60, 1000
 AT_REST = BodyState(p_WB_W=[0, 0, 0], q_WB=[0, 0, 0, 1])
-
-
-def problem_of(case: Made, friction_facets: int = 8) -> SpatialContactProblem:
-    return spatial_problem(
-        MassProperties(mass=MASS, I_B=INERTIA),
-        BodyState(p_WB_W=np.zeros(3), q_WB=[0.0, 0.0, 0.0, 1.0], v_WB_W=case.v, w_WB_W=case.w),
-        ContactSet(p_WC_W=case.points, normals_W=case.normals, frictions=case.frictions),
-        case.wrench[:3],
-        case.wrench[3:],
-        friction_facets=friction_facets,
-    )
 
 
 def place_of(case: Made, answer: SpatialModeAnswer) -> str:
@@ -58,7 +47,7 @@ def places_of(seeds: range) -> Counter[str]:
     places: Counter[str] = Counter()
     for seed in seeds:
         case = made(seed)
-        answer = contact_modes(problem_of(case))
+        answer = contact_modes(problem_of_made(case))
         check_modes(case, answer)
         places[place_of(case, answer)] += 1
         places["unproven"] += answer.verdict == ModeVerdict.UNDECIDED
@@ -83,23 +72,25 @@ def test_a_body_that_slides_at_all_contacts_but_one_may_stick_there_or_begin_to_
     seed: int, modes: list[str]
 ) -> None:
     """Whichever of the modes is found first, the other one is not missed."""
-    answer = contact_modes(problem_of(made(seed)))
+    answer = contact_modes(problem_of_made(made(seed)))
     assert [mode.mode for mode in answer.modes] == modes
 
 
 @seeds(range(12), slow=range(12, 300))
 def test_modes_are_listed_in_the_order_of_their_letters(seed: int) -> None:
     order = {"s": 0, "f": 1, "c": 2}
-    keys = [[order[letter] for letter in mode.mode] for mode in contact_modes(problem_of(made(seed))).modes]
+    keys = [
+        [order[letter] for letter in mode.mode] for mode in contact_modes(problem_of_made(made(seed))).modes
+    ]
     assert keys == sorted(keys)
 
 
 def test_what_sticks_has_one_motion_and_what_only_begins_to_translate_too() -> None:
     """Loads that eight contacts share in many ways do not change how the body translates."""
-    (sliding,) = contact_modes(problem_of(made(93))).modes
+    (sliding,) = contact_modes(problem_of_made(made(93))).modes
     assert (sliding.mode, sliding.forces_unique, sliding.motion_unique) == ("c" * 8, False, True)
     assert sliding.angular_acceleration_W == pytest.approx(np.zeros(3), abs=1e-9)
-    still = next(mode for mode in contact_modes(problem_of(made(5))).modes if mode.mode == "f" * 7)
+    still = next(mode for mode in contact_modes(problem_of_made(made(5))).modes if mode.mode == "f" * 7)
     assert (still.forces_unique, still.motion_unique) == (False, True)
 
 
@@ -115,7 +106,7 @@ def test_no_mode_that_was_made_on_planes_is_missed_in_twenty_thousand_draws(bloc
 @seeds(range(5), slow=range(5, 300))
 def test_the_answer_does_not_depend_on_the_facets(seed: int) -> None:
     case = made(seed)
-    answers = [contact_modes(problem_of(case, facets)) for facets in (3, 8, 24)]
+    answers = [contact_modes(problem_of_made(case, friction_facets=facets)) for facets in (3, 8, 24)]
     assert len({one.verdict for one in answers}) == 1
     assert len({tuple(sorted(mode.mode for mode in one.modes)) for one in answers}) == 1
 

@@ -21,10 +21,11 @@ from contact_dynamics.contact_modes import (
 )
 from contact_dynamics.errors import InvalidFieldError
 from contact_dynamics.rigid_body.body import BodyState, MassProperties
+from contact_modes.evidence import problem_of_made
 from oracles.modes_of_stacks import Stack
 from oracles.modes_of_stacks import made as made_stack
 from oracles.modes_of_two_bodies import Bodies, accelerations, all_modes, drawn
-from oracles.modes_on_planes import INERTIA, MASS, made
+from oracles.modes_on_planes import made
 from sweeps import seeds
 
 G = 9.81
@@ -222,22 +223,16 @@ def of_stack(case: Stack) -> BodiesContactProblem:
 
 @seeds(range(0, 60, 3), slow=range(1, 600))
 def test_one_body_has_the_modes_of_its_own_problem(seed: int) -> None:
-    case = made(seed, most=6)
-    body = MassProperties(mass=MASS, I_B=INERTIA)
-    state = BodyState(p_WB_W=np.zeros(3), q_WB=[0, 0, 0, 1], v_WB_W=case.v, w_WB_W=case.w)
-    contacts = ContactSet(p_WC_W=case.points, normals_W=case.normals, frictions=case.frictions)
-    force, torque = case.wrench[:3], case.wrench[3:]
-    own = contact_modes(
-        SpatialContactProblem(body=body, state=state, contacts=contacts, force_W=force, torque_W=torque)
-    )
+    alone = problem_of_made(made(seed, most=6))
+    own = contact_modes(alone)
     answer = contact_modes(
         BodiesContactProblem(
-            bodies=[body],
-            states=[state],
-            contacts=contacts,
-            pairs=[(0, None)] * len(contacts),
-            forces_W=force,
-            torques_W=torque,
+            bodies=[alone.body],
+            states=[alone.state],
+            contacts=alone.contacts,
+            pairs=[(0, None)] * len(alone.contacts),
+            forces_W=alone.force_W,
+            torques_W=alone.torque_W,
         )
     )
     assert answer.verdict == own.verdict
