@@ -19,9 +19,9 @@ from contact_dynamics.records import Record
 from contact_dynamics.rigid_body.body import BodyState, HasMassProperties, MassProperties
 from contact_dynamics.rigid_body.inertia import solids
 from contact_dynamics.rigid_body.inertia.distribution import MassDistribution, combined
-from contact_dynamics.rigid_body.inertia.triangle_mesh import mesh, signed_volumes
+from contact_dynamics.rigid_body.inertia.triangle_mesh import mesh, mesh_and_parts, signed_volumes
 from contact_dynamics.shapes import convex
-from contact_dynamics.shapes.concavity import parts_of_mesh, warn_if_concave
+from contact_dynamics.shapes.concavity import few_parts, warn_if_concave
 from contact_dynamics.shapes.convex import (
     MAX_VERTICES,
     NO_SHAPE,
@@ -220,11 +220,11 @@ class Body(HasMassProperties):
         elif triangles is None:
             raise InvalidFieldError("triangles", None, "(m, 3) indices of vertices")
         vertices = check_positive("scale", scale) * check_array("vertices_F", vertices_F, (None, 3))
-        solid = mesh(vertices, triangles, mass=mass, density=density)
-        parts = parts_of_mesh(f"mesh {name!r}", vertices, triangles)
+        solid, parts = mesh_and_parts(vertices, triangles, mass=mass, density=density)
+        parts = few_parts(f"mesh {name!r}", parts)
         if len(parts) > 1:
-            pieces = [_uniform_part(f"{name} {i}", *part) for i, part in enumerate(parts)]
-            body = cls.of(name, solid, shape_F=union([piece.shape.moved(piece.p_FB_F) for piece in pieces]))
+            shapes = [_part_of_mesh(f"{name} {i}", *part) for i, part in enumerate(parts)]
+            body = cls.of(name, solid, shape_F=union(shapes))
         else:
             body = cls.of(name, solid, vertices_F=vertices)
         if file is not None:
@@ -342,11 +342,15 @@ class Body(HasMassProperties):
         )
 
 
-def _uniform_part(name: str, vertices_F: FloatArray, triangles: NDArray[np.int64]) -> Body:
-    """Return a part of a mesh, or a cavity, whose triangles are inside out."""
+def _part_of_mesh(name: str, vertices_F: FloatArray, triangles: NDArray[np.int64]) -> ConvexShape:
+    """Return the hull of a part of a mesh, or of a cavity, which is inside out. Warn if it is concave."""
     inside_out = signed_volumes(vertices_F, triangles).sum() < 0.0
-    solid = mesh(vertices_F, triangles[:, ::-1] if inside_out else triangles, density=1.0)
-    return Body.of(name, solid, vertices_F=vertices_F)
+    try:
+        solid = mesh(vertices_F, triangles[:, ::-1] if inside_out else triangles, density=1.0)
+        part = Body.of(name, solid, vertices_F=vertices_F)
+    except InvalidFieldError:  # it is flat, and has no mass
+        return polyhedron(vertices_F)
+    return part.shape.moved(part.p_FB_F)
 
 
 _AT_REST: Final = np.zeros(3)

@@ -207,6 +207,17 @@ def test_a_cavity_of_a_mesh_changes_its_mass_and_not_its_contacts() -> None:
     assert sorted(hollow.vertices_B.tolist()) == sorted(UNIFORM.vertices_B.tolist())
 
 
+def test_a_flat_part_of_a_mesh_has_no_mass_and_touches() -> None:
+    """A triangle with two sides stands out below a box."""
+    vertices, triangles = box_mesh(SIZE, (0, 0, 0))
+    fin = [[0.0, 0.0, 0.0], [0.01, 0.0, 0.0], [0.0, 0.0, -0.1]]
+    both = np.concatenate([triangles, [[8, 9, 10], [8, 10, 9]]])
+    finned = Body.from_mesh(np.concatenate([vertices, fin]), both, 0.4)
+    np.testing.assert_allclose(finned.mass_properties.I_B, UNIFORM.mass_properties.I_B, atol=1e-17)
+    assert [len(part.vertices) for part in finned.shape.parts] == [8, 3]
+    assert finned.vertices_B[:, 2].min() == -0.1
+
+
 def test_a_part_of_a_mesh_that_is_not_convex_is_a_warning() -> None:
     """A box with a dent, beside a box; and more parts than a body may have, of which the hull is taken."""
     dented, box = box_mesh((0.2, 0.2, 0.2), (0, 0, 0)), box_mesh((0.1, 0.1, 0.1), (1, 0, 0), 9)

@@ -22,14 +22,14 @@ import numpy as np
 
 from contact_dynamics.errors import ConcaveShapeWarning, UndecidedError, frames_to_caller
 from contact_dynamics.numerics.convex_hull import Hull, hull_of
-from contact_dynamics.rigid_body.inertia.triangle_mesh import connected_parts
 from contact_dynamics.shapes.convex import MAX_PARTS
 from contact_dynamics.tolerances import FLAT_HULL, INSIDE_HULL
 
 if TYPE_CHECKING:
-    from numpy.typing import ArrayLike, NDArray
+    from numpy.typing import NDArray
 
     from contact_dynamics.rigid_body.body import MassProperties
+    from contact_dynamics.rigid_body.inertia.triangle_mesh import MeshPart
     from contact_dynamics.validation import FloatArray
 
 _FEW: Final = 300
@@ -63,19 +63,13 @@ def warn_if_concave(
         warnings.warn(message, ConcaveShapeWarning, stacklevel=frames_to_caller())
 
 
-def parts_of_mesh(
-    name: str, vertices: FloatArray, triangles: ArrayLike
-) -> list[tuple[FloatArray, NDArray[np.int64]]]:
-    """Return the vertices and triangles of each part of a mesh (`connected_parts`).
-
-    Of more than `MAX_PARTS`, all are returned as one part, with a `ConcaveShapeWarning`.
-    """
-    parts = connected_parts(vertices, triangles)
+def few_parts(name: str, parts: list[MeshPart]) -> list[MeshPart]:
+    """Return the parts of a mesh, or one of all corners, with a `ConcaveShapeWarning`, of too many."""
     if len(parts) <= MAX_PARTS:
         return parts
     message = f"{name} has {len(parts)} parts, more than {MAX_PARTS}. Its convex hull is taken instead"
     warnings.warn(message, ConcaveShapeWarning, stacklevel=frames_to_caller())
-    return [(vertices, np.asarray(triangles))]
+    return [(np.concatenate([vertices for vertices, _ in parts]), np.zeros((0, 3), dtype=np.int64))]
 
 
 def _concave_by(

@@ -25,8 +25,9 @@ from contact_dynamics.errors import (
     frames_to_caller,
 )
 from contact_dynamics.rigid_body.inertia import MassDistribution
+from contact_dynamics.rigid_body.inertia.triangle_mesh import connected_parts
 from contact_dynamics.shapes import convex
-from contact_dynamics.shapes.concavity import parts_of_mesh, warn_if_concave
+from contact_dynamics.shapes.concavity import few_parts, warn_if_concave
 from contact_dynamics.shapes.convex import MAX_VERTICES, ConvexShape
 from contact_dynamics.tolerances import DENSEST, THINNEST
 from contact_dynamics.validation import check_unit
@@ -169,8 +170,9 @@ def _primitives(collision: Element, folder: Path) -> list[Primitive]:
             raise InvalidFieldError("mesh", "<submesh>", "a file of its own for each part")
         file = _file(_text(solid, "filename") or _text(solid, "uri") or "", folder)
         scale = _parsed(_text(solid, "scale") or "1 1 1", "scale", 3)
-        parts = parts_of_mesh(f"mesh {file.name}", *read_mesh(file, scale))
-        corners = [_corners(f"mesh {file.name}", vertices) for vertices, _ in parts]
+        what = f"mesh {file.name}"
+        parts = few_parts(what, connected_parts(*read_mesh(file, scale)))
+        corners = [_corners(what, vertices) for vertices, _ in parts]
         return [Primitive("vertices", each, *_pose(collision)) for each in corners]
     else:
         raise InvalidFieldError("geometry", f"<{kind}>", "a box, cylinder, sphere, capsule or mesh")

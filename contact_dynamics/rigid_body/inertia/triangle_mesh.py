@@ -28,7 +28,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Final, NoReturn
+from typing import TYPE_CHECKING, Final, NoReturn, TypeAlias
 
 import numpy as np
 
@@ -62,10 +62,18 @@ def mesh(
             volume); a number is not finite, an index refers to no vertex, or not exactly one of mass and
             density is given.
     """
+    return mesh_and_parts(p_FV_F, triangles, mass=mass, density=density)[0]
+
+
+def mesh_and_parts(
+    p_FV_F: ArrayLike, triangles: ArrayLike, *, mass: float | None = None, density: float | None = None
+) -> tuple[MassDistribution, list[MeshPart]]:
+    """Return the solid inside a closed mesh, as `mesh` does, and the parts that no edge connects."""
     vertices = check_magnitude("p_FV_F", check_array("p_FV_F", p_FV_F, (None, 3)))
     surface = closed_surface(vertices, triangles)
-    check_facing(vertices, surface)
-    return _solid(vertices, surface.triangles, mass, density)
+    labels = check_facing(vertices, surface)
+    solid = _solid(vertices, surface.triangles, mass, density)
+    return solid, _split(vertices, surface.triangles, labels)
 
 
 def convex_hull(
@@ -108,8 +116,12 @@ def _solid(
 _OUTWARDS: Final = "counter-clockwise seen from outside"
 
 
-def check_facing(p_FV_F: FloatArray, surface: ClosedSurface) -> None:
-    """Raise `InvalidFieldError` where a part is inside out or within another, or no volume is enclosed."""
+def check_facing(p_FV_F: FloatArray, surface: ClosedSurface) -> NDArray[np.int64]:
+    """Return the number, (m,), of the part to which each triangle belongs.
+
+    Raises:
+        InvalidFieldError: a part is inside out or within another, or no volume is enclosed.
+    """
     parts = _Parts.of(p_FV_F, surface)
     total, rounding = float(parts.volumes.sum()), float(parts.rounding.sum())
     if abs(total) <= rounding:
@@ -119,7 +131,7 @@ def check_facing(p_FV_F: FloatArray, surface: ClosedSurface) -> None:
     if total < 0.0:
         raise InvalidFieldError("triangles", f"an enclosed volume of {total:.6g} m^3: inside out", _OUTWARDS)
     if len(parts.volumes) == 1:
-        return
+        return parts.labels
     for part in np.flatnonzero(np.abs(parts.volumes) > parts.rounding).tolist():
         volume = float(parts.volumes[part])
         winding = parts.winding_of_others(part)
@@ -131,6 +143,7 @@ def check_facing(p_FV_F: FloatArray, surface: ClosedSurface) -> None:
             raise InvalidFieldError(
                 "triangles", f"{named} within another", "solids side by side, or in a cavity"
             )
+    return parts.labels
 
 
 @dataclass(frozen=True, slots=True)
@@ -183,11 +196,14 @@ class _Parts:
         return _winding_number(others, _point_inside(self.corners[is_own], self.corners[near], inwards))
 
 
-def connected_parts(p_FV_F: FloatArray, triangles: ArrayLike) -> list[tuple[FloatArray, NDArray[np.int64]]]:
-    """Return the vertices, (k, 3), and triangles, (t, 3), of each part of a closed mesh.
+MeshPart: TypeAlias = "tuple[FloatArray, NDArray[np.int64]]"
+"""The vertices, (k, 3), m, and the triangles, (t, 3), of a part of a mesh."""
 
-    Parts have no edge in common. An open mesh has one part, since its triangles may belong together without
-    sharing corners.
+
+def connected_parts(p_FV_F: FloatArray, triangles: ArrayLike) -> list[MeshPart]:
+    """Return the parts of a closed mesh that no edge connects.
+
+    An open mesh has one part, since its triangles may belong together without sharing corners.
 
     Raises:
         InvalidFieldError: the triangles are not (m, 3) indices of vertices, or all of them are degenerate.
@@ -199,11 +215,14 @@ def connected_parts(p_FV_F: FloatArray, triangles: ArrayLike) -> list[tuple[Floa
     if (edges.counts == 1).any():
         return [(p_FV_F, indices)]
     first = edges.owners[np.repeat(edges.starts, edges.counts)]
-    labels = _labels(first, edges.owners, len(edges.triangles))
-    found = [
-        np.unique(edges.triangles[labels == part], return_inverse=True) for part in range(labels.max() + 1)
-    ]
-    return [(p_FV_F[used], corners.reshape(-1, 3).astype(np.int64)) for used, corners in found]
+    return _split(p_FV_F, edges.triangles, _labels(first, edges.owners, len(edges.triangles)))
+
+
+def _split(vertices: FloatArray, triangles: NDArray[np.int64], labels: NDArray[np.int64]) -> list[MeshPart]:
+    if not labels.any():
+        return [(vertices, triangles)]
+    found = [np.unique(triangles[labels == part], return_inverse=True) for part in range(labels.max() + 1)]
+    return [(vertices[used], corners.reshape(-1, 3).astype(np.int64)) for used, corners in found]
 
 
 def _labels(one: NDArray[np.int64], other: NDArray[np.int64], size: int) -> NDArray[np.int64]:
