@@ -54,13 +54,11 @@ BATCH = 1000
 
 def run() -> None:
     """Measure and print the table."""
-    environment = {
-        **os.environ,
-        "ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST",
-        "ROS_DOMAIN_ID": str(claim_domain()),
-    }
-    os.environ.update(environment)
+    os.environ["ROS_AUTOMATIC_DISCOVERY_RANGE"] = "LOCALHOST"
+    os.environ["ROS_DOMAIN_ID"] = str(claim_domain())
     with tempfile.TemporaryDirectory() as log:
+        environment = {**os.environ, "PYTHONPYCACHEPREFIX": f"{log}/byte_code"}
+        environment.pop("PYTHONDONTWRITEBYTECODE", None)
         server = [
             sys.executable,
             "-m",
@@ -107,18 +105,13 @@ def _measure(
     node = Node("benchmark")
     executor = SingleThreadedExecutor()
     executor.add_node(node)
-    started = time.perf_counter()
-    server_pid = start_server()
-    first = Asker(node, executor, "contact_dynamics", "predict_tumbling")
-    first.ask(
-        PredictTumbling.Request(
-            inertia=Inertia(m=1.0, ixx=1.0, iyy=1.0, izz=1.0), state_source=1, times=[0.1]
-        )
-    )
-    first_answer = time.perf_counter() - started
+    server_pid, _ = _first_answer(node, executor, start_server)
+    os.kill(server_pid, signal.SIGTERM)
+    os.waitpid(server_pid, 0)
+    # The first start has written byte code, which an installed package has.
+    server_pid, first_answer = _first_answer(node, executor, start_server)
     quote("services.first_answer", first_answer, "s", digits=1)
     print(f"first answer {first_answer:.2f} s after the server's start")
-    first.close()
     empty_pid = start_empty()
     print(f"{CALLS} calls of each, alternating; ms")
     print(
@@ -166,6 +159,23 @@ def _measure(
     quote("services.memory", int(resident) / 1024, "MB")
     print(f"resident memory of the server: {int(resident) / 1024:.0f} MB")
     rclpy.shutdown()
+
+
+def _first_answer(
+    node: Node, executor: SingleThreadedExecutor, start_server: Callable[[], int]
+) -> tuple[int, float]:
+    """Start a server, and return its process and the time until its first answer, s."""
+    started = time.perf_counter()
+    server_pid = start_server()
+    first = Asker(node, executor, "contact_dynamics", "predict_tumbling")
+    first.ask(
+        PredictTumbling.Request(
+            inertia=Inertia(m=1.0, ixx=1.0, iyy=1.0, izz=1.0), state_source=1, times=[0.1]
+        )
+    )
+    first_answer = time.perf_counter() - started
+    first.close()
+    return server_pid, first_answer
 
 
 def _alternate(askers: list[Asker], request: Any) -> None:
