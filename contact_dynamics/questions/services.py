@@ -45,6 +45,8 @@ class Answer(Record):
     @property
     def stamp_ns(self) -> int:
         """The stamp, ns, of the state that the question was about, or 0 without one."""
+        if not hasattr(type(self), "state"):  # a record would look for a similar name
+            return 0
         state = getattr(self, "state", None)
         return state.stamp_ns if isinstance(state, BodyState) else 0
 
