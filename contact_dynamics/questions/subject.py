@@ -12,7 +12,8 @@ from typing import TYPE_CHECKING, Final, TypeAlias
 import numpy as np
 
 from contact_dynamics.constants import seconds_between
-from contact_dynamics.contact.found import contacts_within
+from contact_dynamics.contact.found import NO_CONTACTS, contacts_within
+from contact_dynamics.contact.noise import NoisyState, resting, touching
 from contact_dynamics.contact.velocities import relative_velocities
 from contact_dynamics.errors import InvalidFieldError, NotInFlightError, NotSupportedError
 from contact_dynamics.motion.between_states import share_between, state_between
@@ -326,7 +327,7 @@ def _moved(subject: Subject, later: KnownState | None, stamp_ns: int | None, con
     if ahead > horizon:
         found = f"{ahead:.9g} s after the latest state"
         raise InvalidFieldError("stamp", found, f"at most {horizon:g} s, the default horizon")
-    if _stays(subject.body, state, ahead, context):
+    if _stays(subject, ahead, context):
         return replace(subject, state=replace(state, stamp_ns=stamp_ns))
     motion = free_motion(subject.body.mass_properties, state, gravity_W=context.world.gravity_W)
     covariance = subject.covariance
@@ -341,25 +342,32 @@ def _moved(subject: Subject, later: KnownState | None, stamp_ns: int | None, con
     )
 
 
-def _stays(body: Body, state: BodyState, ahead: float, context: Context) -> bool:
-    """Return whether a body rests on a surface in a state, s before the one asked about.
+def _stays(subject: Subject, ahead: float, context: Context) -> bool:
+    """Return whether a body rests on a surface in its state, s before the one asked about.
+
+    With a covariance, it rests if the noise explains its gaps and velocities (`contact.noise`).
 
     Raises:
         InvalidFieldError: it touches a surface and moves, and free motion does not follow.
     """
-    tolerance, touched = context.defaults.velocity_tolerance, None
+    body, state, surfaces = subject.body, subject.state, context.world.surfaces
+    distance, tolerance = context.defaults.distance_tolerance, context.defaults.velocity_tolerance
+    noisy = None if subject.covariance is None else NoisyState.of(state, subject.covariance)
+    touched = NO_CONTACTS
     if not body.shape.is_empty:
         with suppress(NotSupportedError):  # a rim at the edge of an obstacle
-            touched = contacts_within(
-                body, state, context.world.surfaces, context.defaults.distance_tolerance
-            )
-    if not touched:
+            if noisy is not None:
+                noisy = touching(body, noisy, surfaces, distance_tolerance=distance)
+                state = noisy.state
+            touched = contacts_within(body, state, surfaces, distance)
+    if len(touched) == 0:
         return False
+    if noisy is not None:
+        state = resting(noisy, touched, velocity_tolerance=tolerance).state
+    rests = max(np.abs(state.v_WB_W).max(), np.abs(state.w_WB_W).max()) <= tolerance
     rates = np.einsum("ij,ij->i", relative_velocities(state, touched), touched.normals_W)
-    if (rates > tolerance).all():
-        return False
-    if max(np.abs(state.v_WB_W).max(), np.abs(state.w_WB_W).max()) <= tolerance:
-        return True
+    if rests or noisy is not None or (rates > tolerance).all():
+        return bool(rests)
     raise InvalidFieldError(
         "stamp",
         f"{ahead:.3g} s after the latest state, in which {body.name!r} moves and touches "

@@ -108,6 +108,29 @@ def test_a_body_in_contact_does_not_fall_after_its_latest_state() -> None:
     assert subject_of("cube", ahead, known).state.p_WB_W[2] == pytest.approx(risen, abs=1e-12)
 
 
+def test_a_measured_body_at_rest_does_not_fall_after_its_latest_state() -> None:
+    chance, ahead = np.random.default_rng(8), PublishedState(stamp_ns=40 * MS)
+    noise = np.repeat([2e-4, 2e-3, 0.02, 0.05], 3)  # m, rad, m/s, rad/s
+    for k in range(20):
+        error = noise * chance.normal(size=12)
+        measured = BodyState(
+            p_WB_W=np.array([0.0, 0.0, 0.5 * SIDE]) + error[:3],
+            q_WB=[*(0.5 * error[3:6]), np.sqrt(1.0 - 0.25 * error[3:6] @ error[3:6])],
+            v_WB_W=error[6:9],
+            w_WB_W=error[9:],
+            stamp_ns=(10 + k) * MS,
+        )
+        known = watching()
+        known.states.add("cube", UncertainState(state=measured, covariance=np.diag(noise**2)))
+        assert [mode.mode for mode in ask(ContactModeQuestion(body="cube", state=ahead), known).modes] == [
+            "ffff"
+        ]
+    flying = UncertainState(state=replace(rising(10 * MS), stamp_ns=30 * MS), covariance=np.diag(noise**2))
+    known.states.add("cube", flying)
+    fallen = flying.state.v_WB_W[2] - GRAVITY * 0.01
+    assert subject_of("cube", ahead, known).state.v_WB_W[2] == pytest.approx(fallen, abs=1e-12)
+
+
 def test_a_stamp_in_a_gap_is_refused_and_that_of_a_state_is_not() -> None:
     """In half a second without states the body may have struck something."""
     known = watching(0, 600 * MS, now_ns=5000 * MS)
