@@ -63,7 +63,13 @@ def core() -> list[Extension]:
             define_macros=[("SOURCE_CRC", str(compiled["checksum"](HERE / source)))],
             # A fused multiply-add would round once where Python rounds twice. GCC 12 makes some of
             # pairs of operations all the same, unless it leaves these alone.
-            extra_compile_args=["-O2", "-g0", "-ffp-contract=off", "-fno-tree-slp-vectorize"],
+            extra_compile_args=[
+                "-O2",
+                "-g0",
+                "-ffp-contract=off",
+                "-fno-tree-slp-vectorize",
+                "-funroll-loops",
+            ],
             optional=True,
         )
         for source in sources
