@@ -125,6 +125,10 @@ def test_a_measured_body_at_rest_does_not_fall_after_its_latest_state() -> None:
         assert [mode.mode for mode in ask(ContactModeQuestion(body="cube", state=ahead), known).modes] == [
             "ffff"
         ]
+    sliding = measured.with_velocities([0.3, 0.0, 0.0], [0.0, 0.0, 0.0])
+    known.states.add("cube", UncertainState(state=sliding, covariance=np.diag(noise**2)))
+    with pytest.raises(InvalidFieldError, match=r"^stamp must be .* unless the body flies or rests, got 0"):
+        subject_of("cube", ahead, known)
     flying = UncertainState(state=replace(rising(10 * MS), stamp_ns=30 * MS), covariance=np.diag(noise**2))
     known.states.add("cube", flying)
     fallen = flying.state.v_WB_W[2] - GRAVITY * 0.01
