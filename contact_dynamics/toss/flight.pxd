@@ -21,7 +21,7 @@ cdef class Descent:
     cdef Solid solid
     cdef Above above
     cdef (double, double, double) gravity
-    cdef double begin, end
+    cdef double begin, end, looked
     cdef double[13] start
     cdef double[84] q
     cdef double[63] w, momentum

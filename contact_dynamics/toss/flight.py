@@ -60,13 +60,14 @@ class Descent:
         self.pulls = self.before[self.above.count :]
         self.q, self.w, self.momentum = [0.0] * 84, [0.0] * 63, [0.0] * 63  # series, in body axes
         self.begin = self.end = 0.0  # s, between which they hold
+        self.looked = -1.0  # s, the time that was looked at last
 
     def set_out(self, solid: Solid, gravity: Vector3, y: Numbers) -> None:
         """Begin with a state, and bound the accelerations of corners by their turning.
 
         The body may be another one with as many corners, among as many flats. Gravity is in m/s^2.
         """
-        self.solid, self.gravity = solid, gravity
+        self.solid, self.gravity, self.looked = solid, gravity, -1.0
         for k in range(13):
             self.start[k] = y[k]
         w = vec.transposed_times(rows_of(y[3], y[4], y[5], y[6]), (y[10], y[11], y[12]))
@@ -143,6 +144,9 @@ class Descent:
 
     def look(self, seconds: float) -> None:
         """Find heights and rates at a time."""
+        if seconds == self.looked:
+            return
+        self.looked = seconds
         if seconds < self.begin:  # as where a corner grazes a flat just before a series begins
             self._expand_from(0.0, [self.start[k] for k in range(13)])
         if not seconds - self.begin <= _MANY * (self.end - self.begin):
