@@ -118,7 +118,8 @@ def next_landing(
     """
     check_not_negative("horizon", horizon)
     check_not_negative("velocity_tolerance", velocity_tolerance)
-    if motion is not None and motion.state.to_dict() != state.to_dict():
+    own = state if motion is None else motion.state
+    if own is not state and own.to_dict() != state.to_dict():
         raise InvalidFieldError("motion", "one that begins in another", "one that begins in the given state")
     check_not_inside(body, state, world.surfaces, distance_tolerance=distance_tolerance)
     return landing_from(
