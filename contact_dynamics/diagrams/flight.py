@@ -126,5 +126,7 @@ def outside(
         deep = np.flatnonzero(gaps < min(float(gaps[0]), 0.0) - DEEP * shape.size)
         if len(deep) > 0 and deep[0] < count:
             count, name = int(deep[0]), surface.name
+    if not name:
+        return trajectory, ""
     first = {each.name: getattr(trajectory, each.name)[:count] for each in fields(trajectory)}
     return replace(trajectory, **first), name

@@ -29,7 +29,8 @@ from contact_dynamics import (
 )
 from contact_dynamics.contact_modes import contact_modes, mode_margins, statics, wrench_sets
 from contact_dynamics.tolerances import ONLY_REST_WITHIN
-from contact_modes.spatial.test_no_mode_missed import EXACT, NEAR, problem_of
+from contact_modes.evidence import problem_of_made
+from contact_modes.spatial.test_no_mode_missed import EXACT, NEAR
 from oracles.modes_on_planes import Made, made, worst_violation
 from sweeps import seeds
 
@@ -116,7 +117,7 @@ def with_static(case: Made, seed: int) -> tuple[np.ndarray, np.ndarray]:
 def test_no_mode_that_was_made_on_planes_is_missed(seed: int) -> None:
     case = made(seed)
     frictions, static = with_static(case, seed)
-    problem = problem_of(case)
+    problem = problem_of_made(case)
     contacts = replace(problem.contacts, frictions=frictions, static_frictions=static)
     answer = contact_modes(replace(problem, contacts=contacts))
     size = max(EXACT, NEAR * float(np.abs(case.motion).max()))
@@ -139,7 +140,7 @@ def test_no_mode_that_was_made_on_planes_is_missed(seed: int) -> None:
 
 @seeds(range(20))
 def test_equal_static_friction_changes_no_bit(seed: int) -> None:
-    problem = problem_of(made(seed))
+    problem = problem_of_made(made(seed))
     given = replace(problem.contacts, static_frictions=problem.contacts.frictions)
     answers = [contact_modes(replace(problem, contacts=one)) for one in (problem.contacts, given)]
     one, other = ({**answer.to_dict(), "problem": None} for answer in answers)
