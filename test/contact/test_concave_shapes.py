@@ -111,12 +111,16 @@ def test_shapes_without_faces_inside_do_not_warn() -> None:
 
 def test_a_mass_distribution_is_no_mass_properties() -> None:
     """Its centre of mass would be lost. The error says what takes it."""
-    words = r"got a MassDistribution, which Body\.of takes with its centre of mass"
+    words = (
+        r'got a MassDistribution, which Body\.of\("name", it, shape_F=\.\.\.\) takes with its centre of mass'
+    )
     with pytest.raises(WrongTypeError, match=f"mass_properties must be a MassProperties, {words}"):
         Body(name="L", mass_properties=mass("L"))  # type: ignore[arg-type]
     state = BodyState(p_WB_W=np.zeros(3), q_WB=[0, 0, 0, 1], w_WB_W=np.ones(3))
     with pytest.raises(WrongTypeError, match=f"body must be a Body or its MassProperties, {words}"):
         free_motion(mass("L"), state)  # type: ignore[arg-type]
+    with pytest.raises(WrongTypeError, match=f"name must be a str, {words}"):
+        Body.of(mass("L"), shape_F=box(size=(0.1, 0.2, 0.3)))  # type: ignore[call-arg, arg-type]
 
 
 def test_a_configured_bracket_warns() -> None:

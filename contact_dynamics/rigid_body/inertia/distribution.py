@@ -57,7 +57,8 @@ class MassDistribution(Record):
     I_B: FloatArray
 
     HINT_IF_WRONG: ClassVar[str] = (
-        ", which Body.of takes with its centre of mass, and whose mass_properties are about that centre"
+        ', which Body.of("name", it, shape_F=...) takes with its centre of mass, and whose mass_properties '
+        "are about that centre"
     )
 
     def __post_init__(self) -> None:
