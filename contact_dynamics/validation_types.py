@@ -56,6 +56,9 @@ _MEANT: Final[dict[str, tuple[str, ...]]] = {
 """Names that newcomers guess, with the names probably meant. Arguments that begin with the guess are also
 suggested."""
 
+_BELONGS_TO: Final = {"parts": "Body.union makes one body of several parts"}
+"""Names that newcomers give to a call that does not take them, with the call that does."""
+
 _INTERNAL: Final = ("_", "HINT_IF", "ALLOWED")
 """Prefixes of internal names."""
 
@@ -293,7 +296,7 @@ def refuse_unknown(called: Callable[..., object], name: str, allowed: Collection
         words += f", did you mean {guesses[0]}{_meaning(called, guesses[0])}?"
     else:
         words += "."
-    hint = getattr(called, "HINT_IF_UNKNOWN", "")
+    hint = _BELONGS_TO.get(name, getattr(called, "HINT_IF_UNKNOWN", ""))
     raise UnknownArgumentError(f"{words} It has {', '.join(known)}{'; ' if hint else ''}{hint}") from None
 
 

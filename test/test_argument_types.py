@@ -235,6 +235,14 @@ def test_the_error_of_a_mass_names_what_takes_one() -> None:
         Body(name="cup", mass=1.0)  # type: ignore[call-arg]
 
 
+@pytest.mark.parametrize("call", [Body, Body.of, Body.box])
+def test_the_error_of_parts_names_what_takes_them(call: Any) -> None:
+    with pytest.raises(
+        UnknownArgumentError, match=r"no argument 'parts'.*; Body\.union makes one body of sev"
+    ):
+        call(parts=[BOX])
+
+
 def test_the_field_that_was_meant_is_named() -> None:
     motion = free_motion(BOX, STATE)
     with pytest.raises(
