@@ -146,6 +146,16 @@ GUESSES: list[tuple[Any, dict[str, Any], str]] = [
             "(Number of samples, from 1 to `MAX_SAMPLES`)?"
         ),
     ),
+    (
+        World,
+        {"obstacles": ()},
+        "World has no argument 'obstacles', did you mean surfaces (Infinite planes, and ob",
+    ),
+    (
+        Surface,
+        {"kinetic_friction": 0.3},
+        "Surface has no argument 'kinetic_friction', did you mean friction (Co",
+    ),
     (World, {"colour": "red"}, "World has no argument 'colour'. It has bodies, surfaces, gravity_W"),
     (Body.box, {"size": (1, 1, 1), "weight": 1}, "Body.box has no argument 'weight'. It has size, mass, "),
     (
