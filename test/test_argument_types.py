@@ -116,10 +116,13 @@ def test_a_wrong_type_is_an_error_that_names_it(call: Any, arguments: dict[str, 
 
 
 def test_an_argument_is_checked_by_place_and_by_name() -> None:
-    with pytest.raises(WrongTypeError, match=r"^state must be a BodyState, got a MassProperties$"):
+    words = re.escape("got a MassProperties, which Body(name=..., mass_properties=it, shape=...) takes")
+    with pytest.raises(WrongTypeError, match=f"^state must be a BodyState, {words}$"):
         free_motion(BALL, BALL)
-    with pytest.raises(WrongTypeError, match=r"^state must be a BodyState, got a MassProperties$"):
+    with pytest.raises(WrongTypeError, match=f"^state must be a BodyState, {words}$"):
         free_motion(BALL, state=BALL)
+    with pytest.raises(WrongTypeError, match=f"^body must be a Body, {words}$"):
+        landing.next_landing(BALL, STATE, WORLD)
 
 
 GUESSES: list[tuple[Any, dict[str, Any], str]] = [

@@ -65,6 +65,8 @@ class MassProperties(HasMassProperties):
     mass: float
     I_B: FloatArray
 
+    HINT_IF_WRONG: ClassVar[str] = ", which Body(name=..., mass_properties=it, shape=...) takes"
+
     if TYPE_CHECKING:
 
         def __init__(self, *, mass: float, I_B: ArrayLike) -> None:
