@@ -245,7 +245,8 @@ def test_a_part_of_a_mesh_that_is_not_convex_is_a_warning() -> None:
     ("text", "message"),
     [
         (urdf(collision('<box size="0.15 0.05"/>')), "box size must be 3 numbers, got '0.15 0.05'"),
-        (urdf(BOX).replace('value="0.4"', 'value="x"'), "mass must be one number, got 'x'"),
+        (urdf(BOX).replace('value="0.4"', 'value="x"'), "mass of link 'brick' must be one number, got 'x'"),
+        (urdf(BOX).replace('ixy="0" ', ""), "ixy of link 'brick' must be one number, got nothing"),
         (urdf(BOX).replace('value="0.4"', 'value="-1"'), "mass must be .*> 0"),
         (urdf(BOX, moments={**MOMENTS, "izz": 1.0}), "I1 \\+ I2 >= I3"),
         (urdf(collision('<torus size="1"/>')), "geometry must be a box, .*, got <torus>"),
@@ -263,7 +264,11 @@ def test_a_part_of_a_mesh_that_is_not_convex_is_a_warning() -> None:
             urdf(collision('<box size="1 1 1"/>', '<origin rpy="0 0 0" quat_xyzw="0 0 0 1"/>')),
             "origin must be one of them, got rpy and quat_xyzw",
         ),
-        ("<robot/>", "link must be one of those with a mass: none"),
+        ("<robot/>", "source must be a description in which a link has <inertial>, got no <link>"),
+        (
+            '<robot><link name="base"/><link name="arm"/></robot>',
+            "source must be .* a link has <inertial>, got links without it: 'base', 'arm'",
+        ),
         (
             urdf(BOX).replace("brick", "a") + "x",
             "source must be a URDF or an SDF file, got XML with an error",

@@ -126,6 +126,9 @@ def _read(source: str | Path) -> tuple[Element, Path]:
 def _link(root: Element, name: str | None) -> Element:
     links = [(link.get("name", ""), link) for link in root.iter("link")]
     heavy = [(key, link) for key, link in links if link.find("inertial") is not None]
+    if not heavy:
+        found = f"links without it: {', '.join(repr(key) for key, _ in links)}" if links else "no <link>"
+        raise InvalidFieldError("source", found, "a description in which a link has <inertial>")
     chosen = [link for key, link in heavy if name in {key, None}]
     if len(chosen) == 1:
         return chosen[0]
@@ -135,7 +138,7 @@ def _link(root: Element, name: str | None) -> Element:
     elif name in dict(links):
         found += ", which has no <inertial>"
     raise InvalidFieldError(
-        "link", found, f"one of those with a mass: {', '.join(repr(key) for key, _ in heavy) or 'none'}"
+        "link", found, f"one of those with a mass: {', '.join(repr(key) for key, _ in heavy)}"
     )
 
 
@@ -145,11 +148,12 @@ def _mass(link: Element, what: str) -> MassDistribution:
     inertia = None if inertial is None else inertial.find("inertia")
     if inertial is None or inertia is None:
         raise InvalidFieldError(what, "no <inertia>", "mass and inertia")
-    I_B = [[_numbers(inertia, key, 1)[0] for key in row] for row in _MOMENTS]
+    I_B = [[_parsed(_text(inertia, key), f"{key} of {what}", 1)[0] for key in row] for row in _MOMENTS]
     p, q = _pose(inertial)
     mass = inertial.find("mass")
     value = None if mass is None else mass.get("value", mass.text)
-    of_mass = MassDistribution(mass=_parsed(value, "mass", 1)[0], p_FB_F=np.zeros(3), I_B=np.array(I_B))
+    kg = _parsed(value, f"mass of {what}", 1)[0]
+    of_mass = MassDistribution(mass=kg, p_FB_F=np.zeros(3), I_B=np.array(I_B))
     return of_mass.placed(p_GF_G=p, q_GF=q)
 
 
