@@ -50,7 +50,8 @@ SHOWN_AS_ZERO: Final = 1e-12
 # contacts given by the caller
 
 FAR_CONTACT: Final = 0.01
-"""Relative to the reach of a body's shape. A contact further outside is a mistake, not noise."""
+"""Relative to the reach of a body's shape. A contact further outside, or a body deeper in a surface, is a
+mistake, not noise."""
 
 MOVES_INTO: Final = 1e-6
 """Relative to the largest speed of a body's contact points. After an impact, points that approach a surface

@@ -26,7 +26,7 @@ from contact_dynamics.contact.contact import ContactSet, static_or_none
 from contact_dynamics.contact.curvature import Curvatures
 from contact_dynamics.contact.touches import Side, Touch, flat_touches, gap_between, lowest_along, touches_of
 from contact_dynamics.errors import InvalidFieldError, NoShapeError
-from contact_dynamics.tolerances import DISTANCE_TOLERANCE
+from contact_dynamics.tolerances import DISTANCE_TOLERANCE, FAR_CONTACT
 from contact_dynamics.validation import FloatArray, check_not_negative
 from contact_dynamics.world import Body, Surface, World
 
@@ -99,7 +99,9 @@ def check_not_inside(
                 "state",
                 f"{body.name!r} {-gap:.6g} m deep in {surface.name!r}",
                 f"at most {allowed:g} m deep in a surface (distance_tolerance)",
-                hint="measured poses need a larger distance_tolerance",
+                hint="is p_WB_W that of the centre of mass?"
+                if -gap > FAR_CONTACT * body.shape.reach
+                else "measured poses need a larger distance_tolerance",
             )
 
 

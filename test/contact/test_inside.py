@@ -85,12 +85,14 @@ FINDERS: dict[str, Callable[[float, float], object]] = {
 def test_a_body_in_the_floor_is_an_error_that_names_the_depth(name: str) -> None:
     expected = (
         r"^state must be at most 0\.001 m deep in a surface \(distance_tolerance\), "
-        r"got 'cube' 0\.02 m deep in 'floor' \(measured poses need a larger distance_tolerance\)$"
+        r"got 'cube' 0\.05 m deep in 'floor' \(is p_WB_W that of the centre of mass\?\)$"
     )
     with pytest.raises(InvalidFieldError, match=expected):
-        FINDERS[name](0.02, 0.001)
+        FINDERS[name](0.05, 0.001)  # the centre of mass at the height of the floor
     FINDERS[name](0.0005, 0.001)  # noise of measured poses
-    with pytest.raises(InvalidFieldError, match="1e-06 m"):
+    with pytest.raises(
+        InvalidFieldError, match=r"1e-06 m.* \(measured poses need a larger distance_tolerance\)$"
+    ):
         FINDERS[name](0.0005, 0.0)
 
 
