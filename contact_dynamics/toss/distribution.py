@@ -200,9 +200,9 @@ class TossDistribution(Record):
         branches: Tree of the next events. Each branch is listed after the one that it follows, and more
             probable branches are listed first.
         face_normals_B: (f, 3), unit normals of the surface below, body axes, one for each face on which
-            samples rest, most probable first.
-        face_probabilities: (f,), shares of all samples. The sum is less than 1 if some samples do not come to
-            rest.
+            samples rest, most probable first. Empty without ``to_rest``.
+        face_probabilities: (f,), shares of all samples. Empty without ``to_rest``. The sum is less than 1 if
+            some samples do not come to rest.
         face_positions: Regions of the position of the centre of mass at rest on each of these faces, m, world
             (k = 3). Covariance and radii are NaN for a face with fewer than `FEWEST` samples.
         rest: Distribution of the time and position of rest. None if no sample rests, or if samples were not
@@ -232,9 +232,11 @@ class TossDistribution(Record):
 
     def _rests(self) -> str:
         """Return the most probable faces on top, and the share that did not rest."""
+        if not self.to_rest:
+            return ", not followed to rest (to_rest=False)"
         shares = self.face_probabilities.tolist()
         if not shares:
-            return ", none of which came to rest before the horizon" if self.to_rest else ""
+            return ", none of which came to rest before the horizon"
         words = [f"{face} {share:.1%}" for face, share in zip(self.faces_on_top, shares, strict=True)]
         if len(words) > _SHOWN_FACES:
             words[_SHOWN_FACES:] = [f"other faces {sum(shares[_SHOWN_FACES:]):.1%}"]

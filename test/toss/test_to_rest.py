@@ -113,8 +113,8 @@ def test_printed_samples_that_do_not_rest_say_so() -> None:
         .replace("\n ", "")
         == none
     )
-    unasked = f"TossDistribution of 20 samples{exact}"
-    assert str(sampled_toss(*args, world, horizon=0.5, **few)).splitlines()[0] == unasked
+    unasked = f"TossDistribution of 20 samples, not followed to rest (to_rest=False){exact}"
+    assert sampled_toss(*args, world, horizon=0.5, **few).in_short() == unasked
     alike = sampled_toss(*args, world, horizon=0.5, count=20)
     assert alike.exact == ("state", "friction", "restitution", "impact law")
     times = sampled_toss(*args, world, to_rest=True, **few).rest
