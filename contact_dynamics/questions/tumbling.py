@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from contact_dynamics.contact.touches import lowest_along, site_of
+from contact_dynamics.contact.touches import gap_between, lowest_along
 from contact_dynamics.errors import TooLargeError
 from contact_dynamics.motion.covariance import CarriedCovariance, covariance_along
 from contact_dynamics.motion.forces import NO_DRAG, NO_WRENCH, ConstantWrench, Drag
@@ -237,7 +237,7 @@ def _gaps_to(
     near = np.flatnonzero(gaps < -tolerance)
     gaps[near[_SAMPLES_TRIED:]] = 0.0
     for i in near[:_SAMPLES_TRIED].tolist():
-        gaps[i] = site_of(shape, p_WB_W[i], R_WB[i], obstacle).gap
+        gaps[i] = gap_between(shape, p_WB_W[i], R_WB[i], obstacle)
         if gaps[i] < -tolerance:
             break
     return gaps

@@ -24,9 +24,10 @@ from contact_dynamics.questions import (
 )
 from contact_dynamics.questions.context import Context
 from contact_dynamics.questions.tumbling import MAX_CURVE_POINTS, answer
+from contact_dynamics.rigid_body.body import BodyState
 from contact_dynamics.shapes import Obstacle
 from contact_dynamics.tumbling import Regime
-from contact_dynamics.world import World, box_vertices
+from contact_dynamics.world import Body, World, box_vertices
 from questions.known_world import CONTEXT, CUBE, GRAVITY, MASS, MOMENT, SIDE, state
 
 ROUNDING = 1e-12  # a few operations on numbers of order 1 to 10
@@ -83,6 +84,20 @@ def test_a_flight_through_an_obstacle_is_a_warning(aside: float, warned: bool) -
     assert warning.startswith(f"free flight ignores surfaces: at sample {first} 'cube' would be ")
     deep = min(0.5 * GRAVITY * times[first] ** 2 - 0.2, SIDE - aside)
     assert warning.endswith(f"{deep:.3g} m deep in 'box'")
+
+
+def test_a_flight_beside_an_obstacle_in_a_notch_is_no_warning() -> None:
+    """The convex hull of a hook is in a bar below its plate. Its parts are so only 0.2 m further down."""
+    plate, leg = Body.box((0.3, 0.1, 0.05), density=1e3), Body.box((0.05, 0.1, 0.2), density=1e3)
+    hook = Body.union([plate.placed([0.15, 0, 0.225]), leg.placed([0.025, 0, 0.1])], name="hook")
+    corners = box_vertices((0.1, 0.5, 0.1)) + np.array([0.15, 0.0, 0.0])
+    bar = Obstacle(name="bar", vertices_W=corners, friction=0.3, restitution=0.2)
+    at_rest = BodyState(p_WB_W=hook.p_FB_F + np.array([0.0, 0.0, 0.05]), q_WB=[0.0, 0.0, 0.0, 1.0])
+    known = Context(world=World(bodies=(hook,), surfaces=(bar,)))
+    for last, warnings in ((0.2, 0), (0.21, 1)):  # it falls by 0.2 m in 0.202 s
+        times = AtTimes(times=np.linspace(0.0, last, 21))
+        found = answer(TumblingQuestion(body="hook", state=at_rest, sampling=times), known)
+        assert len(found.warnings) == warnings
 
 
 def test_stamps_reach_into_the_past() -> None:
