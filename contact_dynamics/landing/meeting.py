@@ -59,14 +59,20 @@ MAX_STEPS: Final = 5_000
 class Meeting(Landing):
     """The first contact of two bodies in flight; `Landing` documents the other fields.
 
-    Pass one contact to `spatial_pair_impact`, and several to `bodies_impact`. Normals of the contacts point
-    into the first body, and velocities are those of its points relative to the second body.
+    `bodies_impact([body, other], [meeting.state, meeting.other_state], meeting.contacts, meeting.pairs)` is
+    the impact of both bodies. If there is one contact, `spatial_pair_impact` takes it too. Normals of the
+    contacts point into the first body, and velocities are those of its points relative to the second body.
 
     Attributes:
         other_state: State of the second body at that time.
     """
 
     other_state: BodyState
+
+    @property
+    def pairs(self) -> tuple[tuple[int, int], ...]:
+        """Return the two bodies of each contact, (0, 1), as `bodies_impact` takes them."""
+        return ((0, 1),) * len(self.contacts)
 
 
 def next_meeting(

@@ -68,7 +68,8 @@ def test_boxes_that_meet_face_to_face_have_four_contacts() -> None:
     corners = meeting.contacts.p_WC_W + np.array([0, 0, 0.5 * G * 0.9**2])
     expected = [[0, y, z] for y in (-0.05, 0.05) for z in (-0.1, 0.1)]
     np.testing.assert_allclose(sorted(corners.round(12).tolist()), expected, atol=1e-12)
-    impact = bodies_impact([one, other], [meeting.state, meeting.other_state], meeting.contacts, [(0, 1)] * 4)
+    states = [meeting.state, meeting.other_state]
+    impact = bodies_impact([one, other], states, meeting.contacts, meeting.pairs)
     gap = impact.states[1].v_WB_W - impact.states[0].v_WB_W
     assert gap[0] == pytest.approx(0.9 * 2.0, rel=1e-12)
 

@@ -108,7 +108,7 @@ def spatial_pair_impact(
 ) -> SpatialImpact:
     """Return the outcome of a spatial (3-D) impact of two bodies at one contact.
 
-    The contact transmits no moment.
+    The contact transmits no moment. If edges or faces meet, pass all contacts to `bodies_impact`.
 
     Args:
         body: First body, into which the normal points.
