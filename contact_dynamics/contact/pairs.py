@@ -15,7 +15,7 @@ from contact_dynamics.numerics.vectors import point_jacobians
 from contact_dynamics.tolerances import STATES_APART
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Iterable, Sequence
 
     from contact_dynamics.contact.contact import ContactSet
     from contact_dynamics.rigid_body.body import BodyState
@@ -23,6 +23,28 @@ if TYPE_CHECKING:
 
 Pairs: TypeAlias = "Sequence[tuple[int, int | None]]"
 """For each contact, the body into which its normal points, and the other body, or None for the world."""
+
+
+class BodyName(str):
+    """The name of a body that a contact of two bodies has in the place of a surface's (`next_meeting`)."""
+
+    __slots__ = ()
+
+
+def check_with_world(field: str, surfaces: Iterable[str]) -> None:
+    """Reject contacts with a second body where the world, which does not yield, is the other side.
+
+    Raises:
+        InvalidFieldError: a name is that of a body.
+    """
+    for name in surfaces:
+        if isinstance(name, BodyName):
+            raise InvalidFieldError(
+                field,
+                f"one with the body {name!r}",
+                "with the world",
+                "bodies_impact and BodiesContactProblem take both bodies",
+            )
 
 
 def seconds_apart(states: Sequence[BodyState]) -> float:
@@ -48,7 +70,7 @@ def check_one_time(states: Sequence[BodyState], field: str) -> None:
 
 
 def check_pairs(bodies: int, states: Sequence[object], contacts: ContactSet, pairs: Pairs) -> None:
-    """Refuse lists of different length, pairs of other bodies, and surfaces of bodies that move.
+    """Refuse lists of different length, pairs of other bodies, and contacts that differ from their pairs.
 
     Raises:
         InvalidFieldError: one of these.
@@ -67,6 +89,8 @@ def check_pairs(bodies: int, states: Sequence[object], contacts: ContactSet, pai
             raise InvalidFieldError(f"pairs[{i}]", pair, allowed) from None
         if not known or first == second:
             raise InvalidFieldError(f"pairs[{i}]", (first, second), allowed)
+    named = zip(contacts.surfaces, pairs, strict=False)  # there may be no names
+    check_with_world("contacts", [name for name, (_, second) in named if second is None])
     between = [i for i, (_, second) in enumerate(pairs) if second is not None]
     for field in contacts.SURFACE_MOTION:
         motion = getattr(contacts, field)

@@ -25,7 +25,7 @@ import numpy as np
 from contact_dynamics.constants import HORIZON, STANDARD_GRAVITY_W
 from contact_dynamics.contact.contact import ContactSet
 from contact_dynamics.contact.found import check_has_shape
-from contact_dynamics.contact.pairs import check_one_time
+from contact_dynamics.contact.pairs import BodyName, check_one_time
 from contact_dynamics.contact.touches import Pair, Site, site_of, touches_between
 from contact_dynamics.errors import InvalidFieldError, NotSupportedError
 from contact_dynamics.landing.acceleration_bounds import all_free_for, bounds_of, free_for
@@ -62,6 +62,7 @@ class Meeting(Landing):
     `bodies_impact([body, other], [meeting.state, meeting.other_state], meeting.contacts, meeting.pairs)` is
     the impact of both bodies. If there is one contact, `spatial_pair_impact` takes it too. Normals of the
     contacts point into the first body, and velocities are those of its points relative to the second body.
+    Calls that take one body and the world, such as `several_impact`, reject these contacts.
 
     Attributes:
         other_state: State of the second body at that time.
@@ -150,7 +151,7 @@ def next_meeting(
             normals_W=touching.normals[stays],
             frictions=np.full(count, friction),
             restitutions=np.full(count, restitution),
-            surfaces=(other.name,) * count,
+            surfaces=(BodyName(other.name),) * count,
         ),
         velocities_W=touching.velocities[stays],
         strikes=bool((approach < -velocity_tolerance).any()),

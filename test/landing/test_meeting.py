@@ -74,6 +74,31 @@ def test_boxes_that_meet_face_to_face_have_four_contacts() -> None:
     assert gap[0] == pytest.approx(0.9 * 2.0, rel=1e-12)
 
 
+def test_contacts_of_a_meeting_are_no_contacts_with_the_world() -> None:
+    one, other = cd.Body.box((0.2, 0.2, 0.2), 1.0), cd.Body.box((0.2, 0.1, 0.3), 2.0, name="other")
+    meeting = cd.next_meeting(one, at([-1, 0, 0], [1, 0, 0]), other, at([1, 0, 0], [-1, 0, 0]), **PAIR)
+    assert meeting is not None
+    state, contacts = meeting.state, meeting.contacts
+    rest = cd.World()
+    again = cd.ContactSet.of([*contacts])
+    for call in (
+        lambda: cd.spatial_impact(one, state, contacts[0]),
+        lambda: cd.several_impact(one, state, contacts),
+        lambda: cd.several_impact(one, state, again.subset([1, 3])),
+        lambda: cd.impact_sequence(one, state, rest, contacts=contacts),
+        lambda: cd.SpatialContactProblem(body=one, state=state, contacts=contacts, force_W=[0, 0, -G]),
+        lambda: bodies_impact(
+            [one, other], [state, meeting.other_state], contacts, [(0, 1)] * 3 + [(0, None)]
+        ),
+    ):
+        with pytest.raises(
+            InvalidFieldError, match=r"be with the world, got one with the body 'other' \(bodies_im"
+        ):
+            call()
+    as_wall = replace(contacts, surfaces=())  # a surface of the world at the same place
+    assert cd.several_impact(one, state, as_wall).states[0].v_WB_W[0] == pytest.approx(-0.9, rel=1e-12)
+
+
 @seeds(range(12), slow=range(12, 2000))
 def test_spinning_bodies_meet_when_their_hulls_first_touch(seed: int) -> None:
     rng = np.random.default_rng(seed)

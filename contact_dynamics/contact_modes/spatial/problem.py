@@ -23,6 +23,7 @@ import numpy as np
 
 from contact_dynamics.contact.found import find_contacts
 from contact_dynamics.contact.friction import check_facets
+from contact_dynamics.contact.pairs import check_with_world
 from contact_dynamics.contact.uncertainty import EXACT_CONTACTS, ContactUncertainty
 from contact_dynamics.contact.velocities import (
     check_speeds,
@@ -138,6 +139,7 @@ class SpatialContactProblem(Record):
     def __post_init__(self) -> None:
         """Take the mass properties of a body. Check the wrench, the facets and the tolerance."""
         check_speeds(self.state, self.contacts.p_WC_W)
+        check_with_world("contacts", self.contacts.surfaces)
         warn_if_far(self.body, self.state, self.contacts.p_WC_W)
         object.__setattr__(self, "body", self.body.mass_properties)
         object.__setattr__(self, "force_W", check_vector3("force_W", self.force_W))

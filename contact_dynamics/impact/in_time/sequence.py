@@ -30,6 +30,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from contact_dynamics.contact.found import check_not_inside
+from contact_dynamics.contact.pairs import check_with_world
 from contact_dynamics.contact.velocities import velocity_accelerations
 from contact_dynamics.errors import InvalidFieldError
 from contact_dynamics.impact.energy import created
@@ -140,6 +141,7 @@ def impact_sequence(
         if contacts.body_curvatures is not None or contacts.surface_curvatures is not None:
             raise InvalidFieldError("contacts.curvatures", "some", "none: a point of the body on a plane")
         check_at_rest("contacts", contacts, "impact_sequence")
+        check_with_world("contacts", contacts.surfaces)
         _ = contacts.impact_restitutions
         meetings = NamedMeetings(
             body.mass_properties,

@@ -22,7 +22,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from contact_dynamics.contact.pairs import check_one_time
+from contact_dynamics.contact.pairs import check_one_time, check_with_world
 from contact_dynamics.contact.velocities import warn_if_far
 from contact_dynamics.errors import InvalidFieldError
 from contact_dynamics.impact.law import RestitutionLaw
@@ -89,6 +89,7 @@ def spatial_impact(
         >>> print(impact.outcome.name, impact.state.v_WB_W.round(2))
         STICKS_IN_COMPRESSION [1.43 0.   3.5 ]
     """
+    check_with_world("contact", [contact.surface])
     warn_if_far(body, state, contact.p_WC_W)
     body = body.mass_properties
     return _impact(
