@@ -90,7 +90,7 @@ NOT_MEASURED: dict[
     "docs/replay.md": ["the next 50 ms", "occurs within 50 ms", "every 0.1 s", "the preceding 0.1 s"],
     "docs/several-contacts.md": ["some milliseconds apart", "within 1 cm", "default 0.05 s"],
     "docs/tumbling.md": [
-        "a rotation by 190° yields the same pose as one by 170° backwards",
+        "a rotation by 190° yields the same pose as a rotation by 170° in the opposite direction",
         "ideal values of 50 % and 90 %",
         "position, 50 % region | position, 90 % region",
         "attitude, 50 % region | attitude, 90 % region",
