@@ -75,9 +75,6 @@ as it leaves letters undecided."""
 _CARE: Final = 3
 """Number of additional programs that a `CarefulProgram` counts as."""
 
-_SOLVING: Final = 6
-"""Number of additional programs that a search by Newton's method counts as, if the whole gives up soon."""
-
 _MAX_TRIES: Final = 3
 """The number of regions with the same letters in whose middle a mode is sought. The second mostly has one."""
 
@@ -223,7 +220,7 @@ class _Work(PyramidPrograms):
         self._search, self.flats = search, search.flats
         self.staying = among
         self._refutes = refutes
-        self._most, self._hurried = most, most <= FEW_PROGRAMS
+        self._most = most
         self._slides_alone = False  # whether the modes with less than static friction are known
         self._grips: list[int] = []  # the contacts at rest that have more static friction
         self._open = [i for i, one in enumerate(search.pyramids) if one.frame is not None]
@@ -382,7 +379,6 @@ class _Work(PyramidPrograms):
 
     def _slides_together(self, letters: str, near: Sequence[FloatArray]) -> bool:
         """Return whether all modes with some letters are known, after a search near some motions, (d,)."""
-        self.examined += _SOLVING * self._hurried
         held = sliding_together(self._search, letters, near)
         if held.forces is None:
             return held.certain
@@ -481,7 +477,6 @@ class _Work(PyramidPrograms):
 
     def _solve(self, letters: str, forces: FloatArray, *, new: bool = False) -> None:
         """Keep a solution near some forces, and the mode that it is if that is new."""
-        self.examined += _SOLVING * self._hurried
         solution = solution_near(self._search, letters, forces) or solution_near(
             self._search, letters, forces, shared=True
         )
@@ -506,7 +501,7 @@ class _Work(PyramidPrograms):
     def _leave(self, letters: str) -> None:
         """Leave some letters undecided."""
         self.undecided.append(letters)
-        if self._hurried:
+        if self._most <= FEW_PROGRAMS:
             raise _TooManyError
 
     def _keep(self, mode: Known) -> None:
