@@ -186,7 +186,9 @@ class Rows:
 
     def _row(self, answered: Answered) -> _Waiting:
         row: dict[str, Cell] = dict.fromkeys(COLUMNS)
-        body = answered.question.get("body_name", "")
+        body, states = answered.question.get("body_name", ""), answered.question.get("states")
+        if isinstance(states, list):  # of several bodies
+            body = ", ".join(str(state.get("body_name", "")) for state in states)
         row |= {
             "log": self._log,
             "service": answered.service_name,
