@@ -740,9 +740,9 @@ is smaller, which is below the last bit."""
 MODE_STRAIGHT: Final = 1e-8
 """rad. Friction within this angle of the direction opposite to sliding opposes it exactly, up to rounding."""
 
-SLIDING_ROUNDED: Final = 1e-14
-"""Relative to the largest acceleration. A smaller acceleration across friction is rounding error: some 50
-roundings in a sum of forces. The direction of an acceleration of 1e-7 of the largest is known to 1e-7 rad."""
+SLIDING_ROUNDED: Final = 8e-16
+"""Relative to the largest acceleration, or to the largest force over the mass. A smaller acceleration across
+friction is rounding error of a sum of forces, about four roundings."""
 
 MODE_RESTS: Final = 1e-12
 """Relative to the load. Allowed residual of forces that hold a body."""

@@ -57,6 +57,8 @@ def mode_with_forces(
     accelerations = motion.motion(forces)
     points = motion.accelerations(accelerations)
     across = points - np.sum(points * contacts.normals_W, axis=1)[:, None] * contacts.normals_W
+    pressing = np.abs([*forces, forces.sum(axis=0)]).max() / motion.mass
+    rounding = SLIDING_ROUNDED * max(float(np.abs(points).max(initial=0.0)), float(pressing))
     letters = [SEPARATES] * len(contacts)
     directions = np.zeros_like(points)
     for i, letter in zip(touching.tolist(), touching_letters, strict=True):
@@ -71,7 +73,7 @@ def mode_with_forces(
             rubs = float(np.linalg.norm(friction))
             aside = float(np.linalg.norm(cross_of_two(friction, way)))
             begins = not np.any(sliding[i]) and friction @ way < 0.0
-            rounded = begins and aside <= SLIDING_ROUNDED * motion.scale * rubs
+            rounded = begins and aside <= rounding * rubs
             if rubs > 0.0 and (rounded or size <= STRICT * motion.scale):
                 way, size = -friction, rubs  # friction shows the direction better than the acceleration
             directions[i] = way / size if size > 0.0 else way

@@ -147,6 +147,11 @@ def test_forces_that_hide_the_motion_make_no_mode() -> None:
     assert all(np.abs(mode.contact_forces_W).max() <= 1e3 for mode in modes)
 
 
+def test_friction_that_misses_the_sliding_by_more_than_rounding_makes_no_mode() -> None:
+    """A contact that slid at 1e-7 of the load was 1.2 times as far off its friction as is allowed."""
+    check(890, noise_of(890, -5))
+
+
 @pytest.mark.parametrize(("seed", "decade"), [(74, -13), (74, -11), (1398, -9)])
 def test_stacks_that_may_begin_to_turn_about_a_foot_are_decided_soon(seed: int, decade: int) -> None:
     """Near a foot about which a stack turns, feet slide any way, but those above each other the same way.
