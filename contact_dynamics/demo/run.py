@@ -219,7 +219,7 @@ def print_table(toss: Toss, strikes: Sequence[Strike], questioner: Questioner) -
     print(
         f"\nThe states that were published carry noise: {1e3 * toss.velocity_noise:.0f} mm/s and "
         f"{toss.angular_velocity_noise:.2f} rad/s in each component of their velocities.\n"
-        f"They were on their way for at most {1e3 * questioner.latest:.0f} ms."
+        f"Their latency was at most {1e3 * questioner.latest:.0f} ms."
     )
 
 

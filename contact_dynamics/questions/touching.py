@@ -248,12 +248,11 @@ def friction_in_tosses(world: World, contacts: ContactSet, speeds: Sequence[floa
         plane = planes.get(name)
         if plane is None or speed is None or plane.lasting_factor == 1.0:
             continue
-        share = 0.0 if speed == 0.0 else min(speed / plane.lasting_speed, 1.0) if plane.lasting_speed else 1.0
-        factor = plane.lasting_factor + share * (1.0 - plane.lasting_factor)
-        if share < 1.0:
+        if speed == 0.0 or speed < plane.lasting_speed:
             found[name] = (
-                f"the friction of {name!r} is {plane.friction:g} in this answer, and "
-                f"{factor * plane.friction:.3g} in tosses (lasting_factor, lasting_speed)"
+                f"the friction of {name!r} is {plane.friction:g} in this answer. In tosses "
+                f"it is {plane.lasting_factor * plane.friction:.3g} in sustained contact, and in between in "
+                "slow impacts"
             )
     return tuple(found.values())
 

@@ -62,7 +62,7 @@ def records_in(data: bytes) -> list[Record]:
 
 
 def read(path: Path, data: bytes) -> tuple[list[LoggedMessage], list[Loss]]:
-    """The messages of damaged data, and what was told; a warning that is not a log's would raise."""
+    """The messages of damaged data, and the warnings about the log; any other warning raises."""
     path.write_bytes(data)
     reader = BagReader(path)
     with warnings.catch_warnings(record=True) as caught:
@@ -130,7 +130,7 @@ def write_otherwise(path: Path, pose_cdr: PoseCdr, **options: Any) -> bytes:
 
 
 def check_flips(data: bytes, path: Path) -> None:
-    """Whatever bit flips, it costs at most the chunk that it is in, and is told."""
+    """A flipped bit costs at most the chunk that contains it, and causes a warning."""
     chunks = by_chunk(data, path)
     begins = [record.begin for record in records_in(data) if record.kind == Opcode.CHUNK]
     kinds = set()
@@ -261,7 +261,7 @@ def test_every_cut_gives_the_whole_chunks_before_it(log: Path, tmp_path: Path) -
 
 
 def test_channels_that_a_lost_chunk_defined_are_found_in_the_summary(log: Path, tmp_path: Path) -> None:
-    """The first chunk defines all channels. Of a log that was cut too, nothing else does: that is told."""
+    """The first chunk defines all channels. Nothing else does in a log that was also cut: a warning."""
     data = bytearray(log.read_bytes())
     (first, *_) = [record for record in records_in(data) if record.kind == Opcode.CHUNK]
     data[first.end - 1] ^= 1

@@ -218,7 +218,7 @@ def unit_contacts(points: list[np.ndarray], normals: list[np.ndarray]) -> Contac
 
 
 def box_at(walls: int) -> ContactSet:
-    """Return the corners of a unit cube on its first so many walls: floor, two walls, the opposite three."""
+    """Return the corners of a unit cube on the first of its walls: floor, two walls, the opposite three."""
     points, normals = [], []
     for normal, one, two in WALLS[:walls]:
         for i in (1.0, -1.0):
